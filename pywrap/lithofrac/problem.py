@@ -1,0 +1,151 @@
+"""What a run is made of, in SI units: mesh, boundary sets, loads, probes.
+
+A scene turns a checked case into a `Problem`; `lithofrac.run` steps it in the Fortran core.
+Nothing here reads files, and nothing here knows of config keys.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Triangles with named bodies and boundary sets.
+
+    Attributes
+    ----------
+    nodes : (n, 2) float, positions [m]; in axisymmetry column 0 is the radius
+    triangles : (m, 3) int32, 0-based, counter-clockwise
+    body : (m,) int32, index into `body_names`
+    body_names : names of the bodies
+    edge_sets : name -> (k, 2) int32 boundary edges, material on their left
+    """
+
+    nodes: np.ndarray
+    triangles: np.ndarray
+    body: np.ndarray
+    body_names: tuple[str, ...]
+    edge_sets: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def nodes_of(self, name: str) -> np.ndarray:
+        """Sorted node indices of an edge set, (k,) int32."""
+        return np.unique(self.edge_sets[name]).astype(np.int32)
+
+    def centroids(self) -> np.ndarray:
+        """Element centroids [m], (m, 2)."""
+        return self.nodes[self.triangles].mean(axis=1)
+
+    def areas(self) -> np.ndarray:
+        """Element areas [m2], (m,)."""
+        a, b, c = (self.nodes[self.triangles[:, i]] for i in range(3))
+        ab, ac = b - a, c - a
+        return 0.5 * (ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0])
+
+    def save(self, path: Path) -> None:
+        """Write to an .npz without pickled objects."""
+        sets = {f"edges:{name}": edges for name, edges in self.edge_sets.items()}
+        np.savez(
+            path,
+            nodes=self.nodes,
+            triangles=self.triangles,
+            body=self.body,
+            body_names=np.array(self.body_names),
+            **sets,
+        )
+
+    @classmethod
+    def load(cls, path: Path) -> Mesh:
+        """Read what `save` wrote; no code in the file is run."""
+        with np.load(path, allow_pickle=False) as file:
+            sets = {
+                key.removeprefix("edges:"): file[key] for key in file if key.startswith("edges:")
+            }
+            names = tuple(str(name) for name in file["body_names"])
+            return cls(file["nodes"], file["triangles"], file["body"], names, sets)
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """Smooth rise from 0 to 1: 6 s^5 - 15 s^4 + 10 s^3 with s = (t - start) / duration [s]."""
+
+    start: float = 0.0
+    duration: float = 0.0
+
+
+@dataclass(frozen=True)
+class VelocityLoad:
+    """Prescribed velocity of one component of a set of nodes (speed 0: a roller or symmetry)."""
+
+    name: str
+    nodes: np.ndarray
+    component: int
+    speed: float = 0.0  # [m/s]
+    ramp: Ramp = Ramp()
+
+
+@dataclass(frozen=True)
+class PressureLoad:
+    """Follower pressure on edges, with an optional spring.
+
+    pressure [Pa] = ramp(t) * pressure + stiffness * outward displacement of the edge midpoint;
+    `stiffness` [Pa/m] is a distributed (Winkler) spring that stands for a stiff confinement.
+    """
+
+    name: str
+    edges: np.ndarray
+    pressure: float = 0.0
+    stiffness: float = 0.0
+    ramp: Ramp = Ramp()
+
+
+@dataclass(frozen=True)
+class Damping:
+    """Mass-proportional damping, alpha = 2 * fraction * omega (eqs 1-3).
+
+    fraction : fraction of critical of the lowest frequency (the paper's 0.3); 0 is none
+    alpha : fixed alpha [1/s] instead of a Rayleigh quotient at run time, or None
+    relative_to : "affine" damps each body relative to the affine fit of its own velocity,
+        "ground" is eq. 3 to the letter
+    """
+
+    fraction: float = 0.0
+    alpha: float | None = None
+    relative_to: str = "affine"
+
+
+@dataclass(frozen=True)
+class Measures:
+    """How axial stress and strain of a specimen follow from the boundary records.
+
+    Axial stress is the force of `axial_load` over `area`; axial strain the relative
+    displacement of its nodes over `length`. Both compression positive.
+    """
+
+    axial_load: str
+    area: float  # [m2], per metre of depth in plane strain, per radian in axisymmetry
+    length: float  # [m] over which the shortening of `axial_load` alone acts
+    lateral_load: str | None = None  # PressureLoad whose displacement gives the lateral strain
+    lateral_length: float = 1.0  # [m]
+    start_time: float = 0.0  # axial loading starts, after the confinement [s]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """All that a run needs; `materials[i]` belongs to body i of the mesh."""
+
+    mesh: Mesh
+    axisymmetric: bool
+    materials: tuple  # of lithofrac.config.material.Material
+    velocity_loads: tuple[VelocityLoad, ...]
+    pressure_loads: tuple[PressureLoad, ...]
+    end_time: float  # [s]
+    damping: Damping = Damping()
+    time_step_factor: float = 0.9  # of the exact element limit
+    probes: dict[str, int] = field(default_factory=dict)  # name -> element index
+    measures: Measures | None = None
+    records: int = 1000  # rows of the history
+    fields: int = 5  # VTU frames, 0 for none
