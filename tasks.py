@@ -29,6 +29,7 @@ VENV = ROOT / ".venv"
 BIN = VENV / "bin"
 BUILD = ROOT / "build"
 LOG = BUILD / "log"
+PIP = "pip>=23.1"  # the first that takes several settings of a build; Debian 12 has 23.0
 COVERAGE_ASKED = 90  # percent of the lines below fortran/
 
 # What `build` hands to meson beyond pyproject.toml. Coverage and run-time checks share a build:
@@ -77,12 +78,16 @@ CONDA = (
 # ---------------------------------------------------------------- running things
 
 
+def say(text):
+    print(text, flush=True)  # in order with what the children print
+
+
 @contextlib.contextmanager
 def stage(title):
     """One line when a stage is over, with its seconds."""
     start = time.monotonic()
     yield
-    print(f"{title} {'.' * max(3, 60 - len(title))} {time.monotonic() - start:6.1f} s", flush=True)
+    say(f"{title} {'.' * max(3, 60 - len(title))} {time.monotonic() - start:6.1f} s")
 
 
 def environment(**more):
@@ -195,7 +200,7 @@ def install_system():
             options = ["-qq", "-y", "-o=Dpkg::Use-Pty=0", "--no-install-recommends"]
             code = call("apt-get", "install", *options, *packages, env=env, log=LOG / "apt.txt")
         if code:
-            print((LOG / "apt.txt").read_text()[-3000:])
+            say((LOG / "apt.txt").read_text()[-3000:])
         missing = missing_from_system()
     if missing:
         sys.exit(how_to_install(missing))
@@ -256,7 +261,9 @@ def make_environment():
     with stage("virtual environment and requirements"):
         if not works:
             need(sys.executable, "-m", "venv", "--clear", VENV, env=dict(os.environ))
-        need(BIN / "python", "-m", "pip", "install", "-q", "-r", ROOT / "requirements.txt")
+        pip = [BIN / "python", "-m", "pip", "install", "-q", "--disable-pip-version-check"]
+        need(*pip, PIP)
+        need(*pip, "-r", ROOT / "requirements.txt")
     stamp.write_text(environment_key())
 
 
@@ -287,8 +294,8 @@ def build(kind):
             *(f"-Csetup-args={option}" for option in options), ROOT, log=log,
         )  # fmt: skip
     if code:
-        print(f"the {kind} build failed; its words ({log.relative_to(ROOT)}):")
-        print(log.read_text()[-8000:], flush=True)
+        say(f"the {kind} build failed; its words ({log.relative_to(ROOT)}):")
+        say(log.read_text()[-8000:])
         return code
     owner.write_text(environment_key())
     stamp.write_text(want)
@@ -315,7 +322,7 @@ def reproduce(suite, extra):
         return
     with stage("report"):
         need(*snakemake, "--report", "out/report.html")
-    print("read out/report.html or out/report.md")
+    say("read out/report.html or out/report.md")
 
 
 def benchmark(extra):
@@ -346,7 +353,7 @@ def lint():
         with stage(name):
             code = call(BIN / command[0], *command[1:], log=LOG / "lint.txt")
         if code:
-            print((LOG / "lint.txt").read_text(), flush=True)
+            say((LOG / "lint.txt").read_text())
             failed.append(name)
     return failed, len(linters)
 
@@ -434,17 +441,17 @@ def test(everything):
     for kind in order:
         log = LOG / f"{kind}.txt"
         if (codes[kind] or kind == "release") and log.exists():
-            print(f"---- tests, {kind} build ----\n{log.read_text()[-20000:]}")
+            say(f"---- tests, {kind} build ----\n{log.read_text()[-20000:]}")
     counts = {kind: counted(kind) for kind in BUILDS}
     for kind, (passed, wrong, skipped) in counts.items():
-        print(f"tests of the {kind} build: {passed} passed, {wrong} failed, {skipped} skipped")
+        say(f"tests of the {kind} build: {passed} passed, {wrong} failed, {skipped} skipped")
         if codes[kind] and not wrong:
             failed.append(f"tests of the {kind} build ended with exit code {codes[kind]}")
     for name in failed:
-        print(f"failed: {name}")
+        say(f"failed: {name}")
     passed, wrong, skipped = (sum(column) for column in zip(*counts.values(), strict=True))
     wrong += len(failed)
-    print(f"{passed + checks - len(failed)} passed, {wrong} failed, {skipped} skipped")
+    say(f"{passed + checks - len(failed)} passed, {wrong} failed, {skipped} skipped")
     sys.exit(1 if wrong else 0)
 
 
@@ -463,7 +470,7 @@ def main(arguments):
     elif task == "benchmark":
         benchmark(extra)
     elif task in ("help", "-h", "--help"):
-        print(__doc__.strip())
+        say(__doc__.strip())
     else:
         sys.exit(f"tasks.py: no such task: {' '.join(arguments)}\n\n{__doc__.strip()}")
 

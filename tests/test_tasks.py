@@ -26,6 +26,7 @@ def tasks(monkeypatch, tmp_path):
     for name in ("ROOT", "VENV", "BIN", "BUILD", "LOG"):
         path = getattr(module, name)
         monkeypatch.setattr(module, name, tmp_path / path.relative_to(ROOT))
+    monkeypatch.setattr(module, "say", lambda text: None)
     return module
 
 
@@ -110,14 +111,14 @@ def test_second_set_up_runs_no_command(tasks, calls, monkeypatch):
     monkeypatch.setattr(tasks, "install_system", lambda: None)
     tasks.VENV.mkdir()
     tasks.setup()
-    assert len(calls) == 3  # venv, requirements, build
+    assert len(calls) == 4  # venv, pip, requirements, build
     tasks.setup()
-    assert len(calls) == 3
+    assert len(calls) == 4
 
 
 @pytest.mark.no_core
 @pytest.mark.parametrize(
-    ("changed", "commands"), [("fortran/table.f90", 1), ("requirements.txt", 3)]
+    ("changed", "commands"), [("fortran/table.f90", 1), ("requirements.txt", 4)]
 )
 def test_change_repeats_only_what_depends_on_it(tasks, calls, monkeypatch, changed, commands):
     monkeypatch.setattr(tasks, "install_system", lambda: None)
