@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from lithofrac.analysis.strength import Peak, first_peak
@@ -41,10 +42,10 @@ class Run:
 
     @cached_property
     def history(self) -> pd.DataFrame:
-        """`history.parquet`, from the start of axial loading on."""
+        """`history.parquet` of the axial loading: from the last row without axial strain on."""
         table = pd.read_parquet(self.folder / "history.parquet")
-        start = table["axial_strain"].abs().gt(0).idxmax()
-        return table.loc[max(start - 1, 0) :].reset_index(drop=True)
+        before = np.flatnonzero(table["axial_strain"] <= 0.0)
+        return table.iloc[before[-1] if before.size else 0 :].reset_index(drop=True)
 
     @cached_property
     def energy(self) -> pd.DataFrame:
