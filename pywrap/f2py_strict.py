@@ -7,7 +7,8 @@ import subprocess
 import sys
 
 folder, *faces = sys.argv[1:]
-command = [sys.executable, "-m", "numpy.f2py", *faces, "-m", "_core", "--lower", "--build-dir", folder]
+command = [sys.executable, "-m", "numpy.f2py", *faces]
+command += ["-m", "_core", "--lower", "--build-dir", folder]
 done = subprocess.run(command, capture_output=True, text=True)
 said = done.stdout + done.stderr
 if done.returncode or "getctype" in said:

@@ -1,0 +1,164 @@
+"""One clear sentence per mistake: file, key, value, and what was expected there.
+
+pydantic finds the mistakes; this module puts them into words, all at once, one per line.
+"""
+
+import difflib
+from collections.abc import Callable
+from types import UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+
+
+class ConfigError(ValueError):
+    """Bad input; the message holds one sentence per mistake, one per line."""
+
+
+def sentences(
+    error: ValidationError, model: type[BaseModel], file_of: Callable[[tuple], str]
+) -> ConfigError:
+    """Put a pydantic error into words.
+
+    Parameters
+    ----------
+    error : what validation raised
+    model : the model that was validated
+    file_of : gives the file a key was read from, by the key's path
+    """
+    lines = []
+    for item in error.errors(include_url=False):
+        keys, section = _path(model, item["loc"])
+        said = _sentence(".".join(map(str, keys)), item, section)
+        for line in said.split("\n"):
+            named = keys or tuple(line.split(" ")[0].rstrip(":").split("."))
+            lines.append(f"{file_of(named)}: {line}")
+    return ConfigError("\n".join(dict.fromkeys(lines)))
+
+
+def suggestion(word: str, known: list[str]) -> str:
+    """What to use instead of an unknown word: the nearest one, or the whole list."""
+    near = difflib.get_close_matches(str(word), known, n=1, cutoff=0.6)
+    return f"did you mean '{near[0]}'?" if near else f"expected one of: {', '.join(sorted(known))}"
+
+
+def _sentence(key: str, item: dict, section: type[BaseModel] | None) -> str:
+    kind, context = item["type"], item.get("ctx", {})
+    if kind == "extra_forbidden":
+        known = list(section.model_fields) if section else []
+        return f"{key}: unknown key, {suggestion(item['loc'][-1], known)}"
+    if kind == "missing":
+        return f"{key}: missing key, expected {_expected_type(section, item['loc'][-1])}"
+    if kind == "union_tag_not_found":
+        return f"{key}.kind: missing key, expected a text"
+    if kind == "union_tag_invalid":
+        known = [word.strip().strip("'") for word in context["expected_tags"].split(",")]
+        return f"{key}.kind = {context['tag']}: unknown kind, {suggestion(context['tag'], known)}"
+    if kind == "value_error":
+        return f"{key}: {context['error']}" if key else str(context["error"])
+    value = item["input"]
+    shown = f"{key} = {value}" if isinstance(value, (bool, int, float, str)) else key
+    if kind == "literal_error" and isinstance(value, str):
+        return f"{shown}: unknown word, {suggestion(value, _words(context['expected']))}"
+    return f"{shown}: expected {_expected(kind, context)}"
+
+
+def _words(expected: str) -> list[str]:
+    return [word.strip().strip("'") for word in expected.replace(" or ", ",").split(",")]
+
+
+def _expected(kind: str, context: dict) -> str:
+    """What a value had to be, from pydantic's kind of error."""
+    plain = {
+        "finite_number": "a finite number",
+        "float_type": "a number",
+        "int_type": "a whole number",
+        "int_from_float": "a whole number",
+        "string_type": "a text",
+        "bool_type": "true or false",
+        "tuple_type": "a list",
+        "list_type": "a list",
+        "dict_type": "a mapping of keys",
+        "model_type": "a mapping of keys",
+        "model_attributes_type": "a mapping of keys",
+    }
+    if kind in plain:
+        return plain[kind]
+    bounds = {
+        "greater_than": ("a number above", "gt"),
+        "greater_than_equal": ("a number not below", "ge"),
+        "less_than": ("a number below", "lt"),
+        "less_than_equal": ("a number not above", "le"),
+        "too_short": ("a list of at least this many items:", "min_length"),
+        "too_long": ("a list of at most this many items:", "max_length"),
+        "string_too_short": ("a text of at least this many letters:", "min_length"),
+        "literal_error": ("one of", "expected"),
+    }
+    if kind in bounds:
+        words, name = bounds[kind]
+        bound = context[name]
+        return f"{words} {bound:g}" if isinstance(bound, float) else f"{words} {bound}"
+    return kind.replace("_", " ")
+
+
+def _expected_type(section: type[BaseModel] | None, name: Any) -> str:
+    field = section.model_fields.get(name) if section else None
+    if field is None:
+        return "a value"
+    return _type_words(field.annotation)
+
+
+def _type_words(annotation: Any) -> str:
+    words = {float: "a number", int: "a whole number", str: "a text", bool: "true or false"}
+    if annotation in words:
+        return words[annotation]
+    origin = get_origin(annotation)
+    if origin is Literal:
+        return "one of: " + ", ".join(map(str, get_args(annotation)))
+    if origin is tuple:
+        return "a list"
+    if origin in (Union, UnionType):
+        options = {_type_words(part) for part in get_args(annotation) if part is not type(None)}
+        return " or ".join(sorted(options))
+    if origin is Annotated:
+        return _type_words(get_args(annotation)[0])
+    return getattr(annotation, "expected", "a mapping of keys")
+
+
+def _path(model: type[BaseModel], location: tuple) -> tuple[tuple, type[BaseModel] | None]:
+    """Path of keys as written in the file, and the section that holds the last key.
+
+    pydantic puts the name of the chosen member of a union into the location; it is left out.
+    """
+    keys: list = []
+    here: type[BaseModel] | None = model  # section that the next step is a key of
+    holder = here  # section that holds the last key
+    choices: dict[str, type[BaseModel]] = {}  # members of the union just entered
+    inside = False  # the last key was that of a mapping or list of sections
+    for step in location:
+        if step in choices and not inside:
+            here, choices = choices[step], {}
+            continue
+        keys.append(step)
+        holder = here
+        if inside:
+            here, inside = next(iter(choices.values()), None), False
+            continue
+        field = here.model_fields.get(step) if here is not None else None
+        choices = _members(field.annotation) if field else {}
+        inside = field is not None and get_origin(field.annotation) in (dict, tuple)
+        here = next(iter(choices.values())) if len(choices) == 1 and not inside else None
+    return tuple(keys), holder
+
+
+def _members(annotation: Any) -> dict[str, type[BaseModel]]:
+    """Models that an annotation names, by their `kind` or class name."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        kind = annotation.model_fields.get("kind")
+        tag = get_args(kind.annotation)[0] if kind else annotation.__name__
+        return {tag: annotation}
+    found: dict[str, type[BaseModel]] = {}
+    if get_origin(annotation) in (Union, UnionType, Annotated, dict, tuple):
+        for part in get_args(annotation):
+            found.update(_members(part))
+    return found

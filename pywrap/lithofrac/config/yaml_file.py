@@ -1,0 +1,74 @@
+"""Read one YAML file into plain Python, or say in one sentence why not.
+
+The loader builds no objects (safe), refuses a key that stands twice in one mapping, and reads
+`1e-3` as a number, which YAML 1.1 takes for a text.
+"""
+
+import re
+from pathlib import Path
+
+import yaml
+
+from lithofrac.config.errors import ConfigError
+
+
+class _Loader(yaml.SafeLoader):
+    """The safe loader with unique keys and floats as in YAML 1.2."""
+
+
+def _unique_mapping(loader: _Loader, node: yaml.MappingNode, deep: bool = False) -> dict:
+    seen = set()
+    for key_node, _ in node.value:
+        key = loader.construct_object(key_node, deep=True)
+        if not isinstance(key, str):
+            problem = f"key {key!r}: expected a text as key"
+            raise yaml.constructor.ConstructorError(None, None, problem, key_node.start_mark)
+        if key in seen:
+            problem = f"key {key!r} stands twice in one mapping"
+            raise yaml.constructor.ConstructorError(None, None, problem, key_node.start_mark)
+        seen.add(key)
+    return yaml.SafeLoader.construct_mapping(loader, node, deep)
+
+
+_Loader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _unique_mapping)
+_Loader.add_implicit_resolver(
+    "tag:yaml.org,2002:float", re.compile(r"^[-+]?[0-9]+[eE][-+]?[0-9]+$"), list("-+0123456789")
+)
+
+
+def read_yaml(path: Path) -> dict:
+    """Read the mapping that a YAML file holds.
+
+    Raises
+    ------
+    ConfigError
+        When there is no such file, it is not a file, not UTF-8, not YAML, empty, no mapping, or
+        holds a key twice.
+    """
+    try:
+        text = Path(path).read_bytes().decode("utf-8")
+        values = yaml.load(text, Loader=_Loader)
+    except FileNotFoundError:
+        raise ConfigError(f"{path}: no such file") from None
+    except IsADirectoryError:
+        raise ConfigError(f"{path}: is a directory, expected a YAML file") from None
+    except UnicodeDecodeError as error:
+        raise ConfigError(
+            f"{path}: byte {error.start} is not UTF-8, expected a YAML file in UTF-8"
+        ) from None
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read ({error.strerror})") from None
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark
+        where = f" line {mark.line + 1}, column {mark.column + 1}:" if mark else ""
+        raise ConfigError(f"{path}:{where} {error.problem}") from None
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        reason = " ".join(str(error).split())
+        raise ConfigError(f"{path}: not valid YAML ({reason})") from None
+    if values is None:
+        raise ConfigError(f"{path}: file is empty, expected a YAML mapping")
+    if not isinstance(values, dict):
+        raise ConfigError(
+            f"{path}: holds a {type(values).__name__}, expected a YAML mapping of keys"
+        )
+    return values

@@ -1,0 +1,160 @@
+"""The front (tasks.py): what it says, what it refuses, and that a second call does nothing."""
+
+import ast
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture
+def tasks(monkeypatch, tmp_path):
+    """tasks.py as a module that works on an empty tree of its own."""
+    spec = importlib.util.spec_from_file_location("tasks", ROOT / "tasks.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    for name in ("pyproject.toml", "meson.build", "meson.options", "requirements.txt"):
+        (tmp_path / name).write_text(name)
+    (tmp_path / "fortran").mkdir()
+    (tmp_path / "fortran" / "table.f90").write_text("module table")
+    for name in ("pywrap", "configs", "build"):
+        (tmp_path / name).mkdir()
+    for name in ("ROOT", "VENV", "BIN", "BUILD", "LOG"):
+        path = getattr(module, name)
+        monkeypatch.setattr(module, name, tmp_path / path.relative_to(ROOT))
+    monkeypatch.setattr(module, "say", lambda text: None)
+    return module
+
+
+@pytest.fixture
+def calls(tasks, monkeypatch):
+    """Commands that tasks.py would have run; all succeed."""
+    made = []
+
+    def record(*command, **_):
+        made.append([str(word) for word in command])
+        return 0
+
+    monkeypatch.setattr(tasks, "call", record)
+    return made
+
+
+def run_front(*arguments):
+    return subprocess.run(
+        [sys.executable, ROOT / "tasks.py", *arguments], capture_output=True, text=True
+    )
+
+
+def test_loaded_package_is_the_build_under_test(build):
+    """Otherwise the checked and the sanitizer runs would silently test the release build."""
+    import lithofrac._core
+
+    inside = Path(lithofrac._core.__file__).is_relative_to(ROOT / "build" / f"{build}-site")
+    assert inside == (build != "release")
+
+
+@pytest.mark.no_core
+def test_front_needs_only_the_standard_library():
+    tree = ast.parse((ROOT / "tasks.py").read_text())
+    names = {
+        name.split(".")[0]
+        for node in ast.walk(tree)
+        for name in (
+            [alias.name for alias in node.names]
+            if isinstance(node, ast.Import)
+            else [node.module]
+            if isinstance(node, ast.ImportFrom)
+            else []
+        )
+    }
+    assert names <= sys.stdlib_module_names
+
+
+@pytest.mark.no_core
+def test_old_python_can_read_the_front_and_is_refused_in_a_sentence(tasks):
+    ast.parse((ROOT / "tasks.py").read_text(), feature_version=(3, 7))
+    with pytest.raises(SystemExit, match=r"needs Python 3\.11 or newer; this is 3\.9\."):
+        tasks.refuse_old_python((3, 9, 2))
+    tasks.refuse_old_python((3, 11, 0))
+
+
+@pytest.mark.no_core
+def test_without_rights_one_message_says_what_to_install(tasks, calls, monkeypatch):
+    monkeypatch.setenv("FC", "no-such-compiler")
+    monkeypatch.setattr(tasks, "may_use_apt", lambda: False)
+    with pytest.raises(SystemExit) as stopped:
+        tasks.install_system()
+    message = str(stopped.value)
+    assert "lacks: a Fortran compiler" in message
+    for way in ("sudo apt-get install gfortran", "sudo dnf install", "brew install gcc",
+                "module load gcc", "conda create"):  # fmt: skip
+        assert way in message
+    assert calls == []
+
+
+@pytest.mark.no_core
+def test_what_root_lacks_is_installed_and_nothing_else(tasks, calls, monkeypatch):
+    lacking = [{"a Fortran compiler": ["gfortran"]}, {}]
+    monkeypatch.setattr(tasks, "missing_from_system", lambda: lacking.pop(0))
+    monkeypatch.setattr(tasks, "may_use_apt", lambda: True)
+    tasks.install_system()
+    assert calls[-1][:2] == ["apt-get", "install"]
+    assert [word for word in calls[-1][2:] if not word.startswith("-")] == ["gfortran"]
+
+
+@pytest.mark.no_core
+def test_second_set_up_runs_no_command(tasks, calls, monkeypatch):
+    monkeypatch.setattr(tasks, "install_system", lambda: None)
+    tasks.VENV.mkdir()
+    tasks.setup()
+    assert len(calls) == 4  # venv, pip, requirements, build
+    tasks.setup()
+    assert len(calls) == 4
+
+
+@pytest.mark.no_core
+@pytest.mark.parametrize(
+    ("changed", "commands"), [("fortran/table.f90", 1), ("requirements.txt", 4)]
+)
+def test_change_repeats_only_what_depends_on_it(tasks, calls, monkeypatch, changed, commands):
+    monkeypatch.setattr(tasks, "install_system", lambda: None)
+    tasks.VENV.mkdir()
+    tasks.setup()
+    calls.clear()
+    (tasks.ROOT / changed).write_text("changed")
+    tasks.setup()
+    assert len(calls) == commands
+
+
+@pytest.mark.no_core
+def test_failed_build_is_not_taken_for_a_finished_one(tasks, monkeypatch):
+    tasks.LOG.mkdir()
+    (tasks.LOG / "build-release.txt").write_text("Error: something")
+    monkeypatch.setattr(tasks, "call", lambda *_, **__: 1)
+    assert tasks.build("release") == 1
+    assert tasks.build("release") == 1
+
+
+@pytest.mark.no_core
+def test_run_of_tests_without_counts_has_failed(tasks):
+    assert tasks.counted("release") == (0, 1, 0)
+
+
+@pytest.mark.no_core
+@pytest.mark.parametrize("arguments", [["tset"], ["setup", "--fast"], ["test", "--al"]])
+def test_unknown_task_or_option_is_refused_before_anything_is_done(arguments):
+    done = run_front(*arguments)
+    assert done.returncode == 1
+    assert done.stderr.startswith(f"tasks.py: no such task: {' '.join(arguments)}\n")
+
+
+@pytest.mark.no_core
+def test_help_names_every_task():
+    done = run_front("help")
+    assert done.returncode == 0
+    for task in ("reproduce", "test", "setup", "benchmark"):
+        assert f"tasks.py {task}" in done.stdout
