@@ -4,7 +4,7 @@ Units stand in the key names (`_mm`, `_MPa`, `_deg`) and become SI in properties
 Only `lithofrac.config` knows these factors; everything after it reads SI numbers.
 """
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -21,6 +21,8 @@ class Section(BaseModel):
 
     Strict: a text is not a number and a number is not a switch; whole numbers count as numbers.
     """
+
+    expected: ClassVar[str] = "a mapping of keys"  # what a message asks for in its place
 
     model_config = ConfigDict(
         extra="forbid",

@@ -29,7 +29,10 @@ def sentences(
     lines = []
     for item in error.errors(include_url=False):
         keys, section = _path(model, item["loc"])
-        lines.append(f"{file_of(keys)}: {_sentence('.'.join(map(str, keys)), item, section)}")
+        said = _sentence(".".join(map(str, keys)), item, section)
+        for line in said.split("\n"):
+            named = keys or tuple(line.split(" ")[0].rstrip(":").split("."))
+            lines.append(f"{file_of(named)}: {line}")
     return ConfigError("\n".join(dict.fromkeys(lines)))
 
 
@@ -117,7 +120,9 @@ def _type_words(annotation: Any) -> str:
     if origin in (Union, UnionType):
         options = {_type_words(part) for part in get_args(annotation) if part is not type(None)}
         return " or ".join(sorted(options))
-    return "a mapping of keys"
+    if origin is Annotated:
+        return _type_words(get_args(annotation)[0])
+    return getattr(annotation, "expected", "a mapping of keys")
 
 
 def _path(model: type[BaseModel], location: tuple) -> tuple[tuple, type[BaseModel] | None]:
@@ -126,23 +131,24 @@ def _path(model: type[BaseModel], location: tuple) -> tuple[tuple, type[BaseMode
     pydantic puts the name of the chosen member of a union into the location; it is left out.
     """
     keys: list = []
-    here: type[BaseModel] | None = model
-    members: dict[str, type[BaseModel]] = {}
+    here: type[BaseModel] | None = model  # section that the next step is a key of
+    holder = here  # section that holds the last key
+    choices: dict[str, type[BaseModel]] = {}  # members of the union just entered
+    inside = False  # the last key was that of a mapping or list of sections
     for step in location:
-        if step in members:
-            here, members = members[step], {}
+        if step in choices and not inside:
+            here, choices = choices[step], {}
             continue
         keys.append(step)
-        last = here
-        members = {}
-        if here is not None and step in here.model_fields:
-            members = _members(here.model_fields[step].annotation)
-            here = next(iter(members.values())) if len(members) == 1 else None
-        elif here is not None and not isinstance(step, int):
-            here = None
-        if step == location[-1]:
-            here = last
-    return tuple(keys), here
+        holder = here
+        if inside:
+            here, inside = next(iter(choices.values()), None), False
+            continue
+        field = here.model_fields.get(step) if here is not None else None
+        choices = _members(field.annotation) if field else {}
+        inside = field is not None and get_origin(field.annotation) in (dict, tuple)
+        here = next(iter(choices.values())) if len(choices) == 1 and not inside else None
+    return tuple(keys), holder
 
 
 def _members(annotation: Any) -> dict[str, type[BaseModel]]:

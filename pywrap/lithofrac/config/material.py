@@ -8,7 +8,7 @@ below is the default.
 
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
@@ -32,6 +32,8 @@ class Material(Section):
     The four columns of the hardening table have equal lengths; between their rows the law is
     linear in cohesion and in the angles, and flat beyond both ends.
     """
+
+    expected: ClassVar[str] = "the name of a material, or its keys"
 
     title: str = ""
     """What the material is and where its numbers come from."""
@@ -215,7 +217,7 @@ def find_material(name: str | Path, beside: Path | None = None) -> Path:
         return (beside or Path()) / text
     folders = [Path("configs/materials"), PACKAGED / "materials"]
     if beside is not None:
-        folders.insert(0, beside.parent / "materials")
+        folders[:0] = [beside / "materials", beside.parent / "materials"]
     for folder in folders:
         if (folder / f"{text}.yaml").is_file():
             return folder / f"{text}.yaml"

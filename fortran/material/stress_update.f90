@@ -1,0 +1,167 @@
+!> Stress update of one material point: axes, return mapping, softening.
+!>
+!> An elastic trial stress comes in, stress and inelastic strain go out, and the state of the
+!> point moves on (Klerck, Sellers & Owen 2004, sections 2.2-2.4). The principal directions are
+!> those of the trial stress. Components are xx, yy, zz, xy; shear strain is engineering.
+module lithofrac_material_stress_update
+   use lithofrac_base_kinds, only: wp
+   use lithofrac_base_status, only: no_return_map, ok
+   use lithofrac_material_crack_axes, only: follow_axes, turn_crack
+   use lithofrac_material_mohr_coulomb, only: strength_coefficients
+   use lithofrac_material_return_map, only: return_to_surface
+   use lithofrac_material_rock, only: rock_type
+   use lithofrac_material_tension_planes, only: softened_strength, softening_modulus
+   use lithofrac_math_principal, only: normal_components, tensor_from_axes
+   implicit none
+   private
+
+   public :: point_type, virgin_point, update_stress, strength_coefficients, softening_modulus
+   public :: substep_bit
+
+   integer, parameter :: substep_bit = 11  !! set in `active` when the step was cut
+   integer, parameter :: max_halvings = 8
+
+   !> History of one material point.
+   type :: point_type
+      real(wp) :: ep_eff = 0.0_wp      !! effective plastic strain [-], eq. 7
+      real(wp) :: ft(3) = 0.0_wp       !! tensile strengths [Pa]: first axis, 90 degrees to it, zz
+      real(wp) :: opening(3) = 0.0_wp  !! positive inelastic strain along the same axes [-]
+      real(wp) :: axis(2) = [1.0_wp, 0.0_wp]  !! cos 2a, sin 2a of the first in-plane axis
+      real(wp) :: crack(2) = 0.0_wp    !! eq. 13: sum of damage times doubled direction [-]
+   end type point_type
+
+contains
+
+   !> A point that has seen no inelastic strain.
+   pure function virgin_point(rock) result(point)
+      type(rock_type), intent(in) :: rock
+      type(point_type) :: point
+
+      point%ft = rock%tensile_strength
+   end function virgin_point
+
+   !> Take one step. `sigma = trial - C : dep` holds to rounding.
+   !>
+   !> `active` is zero for an elastic step. Its bits 0 to 2 are the tension planes of axes 1 to
+   !> 3 of the point, bits 3 to 8 the Mohr-Coulomb planes (larger, smaller stress) = (1,2),
+   !> (1,3), (2,1), (2,3), (3,1), (3,2), bit 9 the apex, bit 10 a mixture of two sets that
+   !> share their stress, bit 11 a step that was cut (then the planes of all parts).
+   !> On `code == no_return_map` point and stress stay as they were at the start of the step.
+   pure subroutine update_stress(rock, softening, old, trial, point, sigma, dep, &
+      dep_compressive, active, code)
+      type(rock_type), intent(in) :: rock
+      real(wp), intent(in) :: softening            !! H, not positive [Pa]
+      real(wp), intent(in) :: old(4)               !! stress at the start of the step [Pa]
+      real(wp), intent(in) :: trial(4)             !! elastic trial stress [Pa]
+      type(point_type), intent(inout) :: point
+      real(wp), intent(out) :: sigma(4)            !! stress at the end of the step [Pa]
+      real(wp), intent(out) :: dep(4)              !! inelastic strain increment [-]
+      real(wp), intent(out) :: dep_compressive(4)  !! its Mohr-Coulomb part [-]
+      integer, intent(out) :: active               !! planes with flow
+      integer, intent(out) :: code                 !! `ok` or `no_return_map`
+
+      integer :: halving
+
+      sigma = trial
+      dep = 0.0_wp
+      dep_compressive = 0.0_wp
+      active = 0
+      code = ok
+      if (.not. rock%yields) return
+      call take_step(rock, softening, trial, point, sigma, dep, dep_compressive, active, code)
+      do halving = 1, max_halvings
+         if (code == ok) return
+         call take_parts(rock, softening, old, trial, 2**halving, point, sigma, dep, &
+            dep_compressive, active, code)
+      end do
+      if (code /= ok) sigma = old
+   end subroutine update_stress
+
+   !> One return, without sub-steps.
+   pure subroutine take_step(rock, softening, trial, point, sigma, dep, dep_compressive, &
+      active, code)
+      type(rock_type), intent(in) :: rock
+      real(wp), intent(in) :: softening
+      real(wp), intent(in) :: trial(4)
+      type(point_type), intent(inout) :: point
+      real(wp), intent(out) :: sigma(4)
+      real(wp), intent(out) :: dep(4)
+      real(wp), intent(out) :: dep_compressive(4)
+      integer, intent(out) :: active
+      integer, intent(out) :: code
+
+      real(wp) :: axis(2), d(3), ft(3), normal(3), volume, x(3)
+
+      axis = point%axis
+      call follow_axes(trial, axis)
+      normal = normal_components(trial, axis)
+      call return_to_surface(rock, softening, normal, point%ft, point%ep_eff, d, x, active, code)
+      sigma = trial
+      dep = 0.0_wp
+      dep_compressive = 0.0_wp
+      if (code /= ok) return
+      point%axis = axis
+      if (active == 0) return
+
+      dep = tensor_from_axes(d, axis)
+      dep_compressive = tensor_from_axes(x, axis)
+      volume = rock%lame*(dep(1) + dep(2) + dep(3))
+      sigma = trial - 2.0_wp*rock%shear*dep - [volume, volume, volume, 0.0_wp]
+      dep(4) = 2.0_wp*dep(4)
+      dep_compressive(4) = 2.0_wp*dep_compressive(4)
+
+      ft = softened_strength(point%ft, softening, d)
+      call turn_crack((point%ft(:2) - ft(:2))/rock%tensile_strength, axis, point%crack)
+      point%ft = ft
+      point%opening = point%opening + max(d, 0.0_wp)
+   end subroutine take_step
+
+   !> The step in `parts` equal pieces; the state moves only if every piece returns.
+   pure subroutine take_parts(rock, softening, old, trial, parts, point, sigma, dep, &
+      dep_compressive, active, code)
+      type(rock_type), intent(in) :: rock
+      real(wp), intent(in) :: softening
+      real(wp), intent(in) :: old(4)
+      real(wp), intent(in) :: trial(4)
+      integer, intent(in) :: parts
+      type(point_type), intent(inout) :: point
+      real(wp), intent(out) :: sigma(4)
+      real(wp), intent(out) :: dep(4)
+      real(wp), intent(out) :: dep_compressive(4)
+      integer, intent(out) :: active
+      integer, intent(out) :: code
+
+      type(point_type) :: moving
+      integer :: part, part_active
+      real(wp) :: now(4), part_dep(4), part_compressive(4), part_trial(4), volume
+
+      moving = point
+      now = old
+      dep = 0.0_wp
+      dep_compressive = 0.0_wp
+      active = 0
+      code = no_return_map
+      do part = 1, parts
+         part_trial = now + (trial - old)/real(parts, wp)
+         call take_step(rock, softening, part_trial, moving, now, part_dep, part_compressive, &
+            part_active, code)
+         if (code /= ok) exit
+         dep = dep + part_dep
+         dep_compressive = dep_compressive + part_compressive
+         active = ior(active, part_active)
+      end do
+      if (code == ok) then
+         volume = rock%lame*(dep(1) + dep(2) + dep(3))
+         sigma = trial - 2.0_wp*rock%shear*[dep(1), dep(2), dep(3), 0.5_wp*dep(4)] &
+            - [volume, volume, volume, 0.0_wp]
+         point = moving
+         active = ibset(active, substep_bit)
+      else
+         sigma = old
+         dep = 0.0_wp
+         dep_compressive = 0.0_wp
+         active = 0
+      end if
+   end subroutine take_parts
+
+end module lithofrac_material_stress_update

@@ -1,0 +1,259 @@
+!> Stress and nodal forces of one chunk of elements: predict, check, return, sum.
+!>
+!> All variants share one predictor. An elastic body skips the check, a virgin chunk reads its
+!> strength from one line, and only flagged elements go through the scalar return mapping.
+module lithofrac_mechanics_internal_force
+   use lithofrac_base_kinds, only: wp
+   use lithofrac_base_status, only: ok
+   use lithofrac_material_rock, only: rock_type
+   use lithofrac_material_stress_update, only: point_type, strength_coefficients, update_stress
+   use lithofrac_mechanics_chunks, only: chunks_type, width
+   use lithofrac_mechanics_fields, only: fields_type, inelastic_type
+   use lithofrac_mechanics_kinematics, only: elastic_stress, gather, gather_previous, &
+      hoop_strain, nodal_forces, scatter, scatter_hoop, strains
+   implicit none
+   private
+
+   public :: chunk_force, chunk_stress, failure_type
+
+   !> What went wrong in an element, for words where step and time are known.
+   type :: failure_type
+      integer :: code = ok
+      integer :: element = 0
+      real(wp) :: trial(4) = 0.0_wp   !! trial stress [Pa]
+   end type failure_type
+
+   real(wp), parameter :: no_strain(width, 4) = 0.0_wp
+   real(wp), parameter :: equal_stress = 1.0e-12_wp  !! relative: in-plane axes keep their place
+
+contains
+
+   !> Update the material of a chunk and add its nodal forces to the buffer of its block.
+   subroutine chunk_force(chunks, chunk, rock, fields, dt, state, shift, buffer, failure)
+      type(chunks_type), intent(in) :: chunks
+      integer, intent(in) :: chunk
+      type(rock_type), intent(in) :: rock
+      type(fields_type), intent(in) :: fields
+      real(wp), intent(in) :: dt                           !! step that led here [s]
+      type(inelastic_type), intent(inout) :: state
+      integer, intent(in) :: shift                         !! node number minus place in `buffer`
+      real(wp), intent(inout), contiguous :: buffer(:, :)  !! (2, nodes of the block) [N]
+      type(failure_type), intent(inout) :: failure
+
+      real(wp) :: strain(width, 4), rotation(width, 3), stress(width, 4), force(width, 4)
+
+      call predict(chunks, chunk, rock, fields, state, strain, rotation, stress)
+      if (rock%yields) call return_flagged(chunks, chunk, rock, fields, dt, state, stress, failure)
+      associate (node => chunks%node(:, :, chunk), volume => chunks%volume(:, chunk))
+         call nodal_forces(chunks%gradient(:, :, chunk), volume, strain, rotation, stress, force)
+         call scatter(node, shift, force, buffer)
+         if (chunks%axisymmetric) call scatter_hoop(node, shift, chunks%hoop(:, chunk), volume, &
+            stress(:, 3), buffer)
+      end associate
+   end subroutine chunk_force
+
+   !> Strain and stress of a chunk as it is, without any update.
+   subroutine chunk_stress(chunks, chunk, rock, fields, state, strain, stress)
+      type(chunks_type), intent(in) :: chunks
+      integer, intent(in) :: chunk
+      type(rock_type), intent(in) :: rock
+      type(fields_type), intent(in) :: fields
+      type(inelastic_type), intent(in) :: state
+      real(wp), intent(out) :: strain(width, 4)   !! U - I, unrotated, engineering shear
+      real(wp), intent(out) :: stress(width, 4)   !! unrotated [Pa]
+
+      real(wp) :: rotation(width, 3)
+
+      call predict(chunks, chunk, rock, fields, state, strain, rotation, stress)
+   end subroutine chunk_stress
+
+   subroutine predict(chunks, chunk, rock, fields, state, strain, rotation, stress)
+      type(chunks_type), intent(in) :: chunks
+      integer, intent(in) :: chunk
+      type(rock_type), intent(in) :: rock
+      type(fields_type), intent(in) :: fields
+      type(inelastic_type), intent(in) :: state
+      real(wp), intent(out) :: strain(width, 4)
+      real(wp), intent(out) :: rotation(width, 3)
+      real(wp), intent(out) :: stress(width, 4)
+
+      real(wp) :: du(width, 4)
+
+      call gather(chunks%node(:, :, chunk), fields%u, du)
+      if (chunks%axisymmetric) then
+         call hoop_strain(chunks%node(:, :, chunk), fields%u, chunks%hoop(:, chunk), strain(:, 3))
+      else
+         strain(:, 3) = 0.0_wp
+      end if
+      call strains(width, chunks%gradient(:, :, chunk), du, strain, rotation)
+      if (state%touched(chunk)) then
+         call elastic_stress(width, rock%lame, rock%shear, strain, state%strain(:, :, chunk), stress)
+      else
+         call elastic_stress(width, rock%lame, rock%shear, strain, no_strain, stress)
+      end if
+   end subroutine predict
+
+   !> Find the elements beyond their strength and bring each back.
+   subroutine return_flagged(chunks, chunk, rock, fields, dt, state, stress, failure)
+      type(chunks_type), intent(in) :: chunks
+      integer, intent(in) :: chunk
+      type(rock_type), intent(in) :: rock
+      type(fields_type), intent(in) :: fields
+      real(wp), intent(in) :: dt
+      type(inelastic_type), intent(inout) :: state
+      real(wp), intent(inout) :: stress(width, 4)
+      type(failure_type), intent(inout) :: failure
+
+      real(wp) :: excess(width), axis(width, 2)
+      integer :: lane
+
+      if (state%touched(chunk)) then
+         call check_softened(stress, state%axis(:, :, chunk), state%ft(:, :, chunk), &
+            state%sin_phi(:, chunk), state%c_cos_phi(:, chunk), excess, axis)
+      else
+         call check_virgin(stress, rock, excess)
+      end if
+      if (maxval(excess) > rock%yield_tolerance) then
+         state%touched(chunk) = .true.
+         do lane = 1, chunks%filled(chunk)
+            if (excess(lane) > rock%yield_tolerance) then
+               call return_lane(chunks, chunk, lane, rock, fields, dt, state, stress, failure)
+            end if
+         end do
+      else if (.not. state%touched(chunk)) then
+         return
+      end if
+      where (excess <= rock%yield_tolerance)
+         state%axis(:, 1, chunk) = axis(:, 1)
+         state%axis(:, 2, chunk) = axis(:, 2)
+      end where
+   end subroutine return_flagged
+
+   !> How far the stress lies beyond the virgin strength [Pa], negative inside.
+   pure subroutine check_virgin(stress, rock, excess)
+      real(wp), intent(in) :: stress(width, 4)
+      type(rock_type), intent(in) :: rock
+      real(wp), intent(out) :: excess(width)
+
+      integer :: i
+      real(wp) :: mean, half, radius, high, low
+
+      associate (sin_phi => rock%sin_phi0, c_cos_phi => rock%c_cos_phi0, &
+            ft => rock%tensile_strength)
+         !$omp simd private(mean, half, radius, high, low)
+         do i = 1, width
+            mean = 0.5_wp*(stress(i, 1) + stress(i, 2))
+            half = 0.5_wp*(stress(i, 1) - stress(i, 2))
+            radius = sqrt(half*half + stress(i, 4)*stress(i, 4))
+            high = max(mean + radius, stress(i, 3))
+            low = min(mean - radius, stress(i, 3))
+            excess(i) = max(0.5_wp*(high - low) + 0.5_wp*(high + low)*sin_phi - c_cos_phi, &
+               high - ft)
+         end do
+      end associate
+   end subroutine check_virgin
+
+   !> The same for softened, anisotropic strength; the strengths belong to the nearest axes.
+   pure subroutine check_softened(stress, old_axis, ft, sin_phi, c_cos_phi, excess, axis)
+      real(wp), intent(in) :: stress(width, 4)
+      real(wp), intent(in) :: old_axis(width, 2)    !! cos 2a, sin 2a
+      real(wp), intent(in) :: ft(width, 3)          !! [Pa]
+      real(wp), intent(in) :: sin_phi(width)
+      real(wp), intent(in) :: c_cos_phi(width)      !! [Pa]
+      real(wp), intent(out) :: excess(width)        !! [Pa]
+      real(wp), intent(out) :: axis(width, 2)       !! axes after an elastic step
+
+      integer :: i
+      real(wp) :: mean, half, radius, high, low, turn, first, second, by_radius
+      logical :: keeps
+
+      !$omp simd private(mean, half, radius, high, low, turn, first, second, by_radius, keeps)
+      do i = 1, width
+         mean = 0.5_wp*(stress(i, 1) + stress(i, 2))
+         half = 0.5_wp*(stress(i, 1) - stress(i, 2))
+         radius = sqrt(half*half + stress(i, 4)*stress(i, 4))
+         turn = half*old_axis(i, 1) + stress(i, 4)*old_axis(i, 2)
+         keeps = turn >= 0.0_wp
+         first = mean + merge(radius, -radius, keeps)
+         second = mean - merge(radius, -radius, keeps)
+         high = max(mean + radius, stress(i, 3))
+         low = min(mean - radius, stress(i, 3))
+         excess(i) = max( &
+            max(0.5_wp*(high - low) + 0.5_wp*(high + low)*sin_phi(i) - c_cos_phi(i), &
+            first - ft(i, 1)), max(second - ft(i, 2), stress(i, 3) - ft(i, 3)))
+         by_radius = 1.0_wp/max(radius, tiny(radius))
+         by_radius = merge(by_radius, -by_radius, keeps)
+         axis(i, 1) = merge(half*by_radius, old_axis(i, 1), radius > equal_stress*abs(mean))
+         axis(i, 2) = merge(stress(i, 4)*by_radius, old_axis(i, 2), radius > equal_stress*abs(mean))
+      end do
+   end subroutine check_softened
+
+   !> Return one element to its strength and book the energy it dissipates (trapezoid).
+   subroutine return_lane(chunks, chunk, lane, rock, fields, dt, state, stress, failure)
+      type(chunks_type), intent(in) :: chunks
+      integer, intent(in) :: chunk
+      integer, intent(in) :: lane
+      type(rock_type), intent(in) :: rock
+      type(fields_type), intent(in) :: fields
+      real(wp), intent(in) :: dt
+      type(inelastic_type), intent(inout) :: state
+      real(wp), intent(inout) :: stress(width, 4)
+      type(failure_type), intent(inout) :: failure
+
+      type(point_type) :: point
+      real(wp) :: old(4), trial(4), sigma(4), dep(4), dep_compressive(4), work(2)
+      integer :: active, code
+
+      old = previous_stress(chunks, chunk, lane, rock, fields, dt, state)
+      trial = stress(lane, :)
+      point%ep_eff = state%plastic_strain(lane, chunk)
+      point%ft = state%ft(lane, :, chunk)
+      point%opening = state%opening(lane, :, chunk)
+      point%axis = state%axis(lane, :, chunk)
+      point%crack = state%crack(lane, :, chunk)
+      call update_stress(rock, state%softening(lane, chunk), old, trial, point, sigma, dep, &
+         dep_compressive, active, code)
+      if (code /= ok) then
+         if (failure%code == ok) &
+            failure = failure_type(code, chunks%element(lane, chunk), trial)
+         return
+      end if
+      stress(lane, :) = sigma
+      state%strain(lane, :, chunk) = state%strain(lane, :, chunk) + dep
+      work(1) = 0.5_wp*dot_product(old + sigma, dep_compressive)
+      work(2) = 0.5_wp*dot_product(old + sigma, dep - dep_compressive)
+      state%dissipated(lane, :, chunk) = state%dissipated(lane, :, chunk) + work
+      if (point%ep_eff > state%plastic_strain(lane, chunk)) &
+         call strength_coefficients(rock, point%ep_eff, state%sin_phi(lane, chunk), &
+         state%c_cos_phi(lane, chunk))
+      state%plastic_strain(lane, chunk) = point%ep_eff
+      state%ft(lane, :, chunk) = point%ft
+      state%opening(lane, :, chunk) = point%opening
+      state%axis(lane, :, chunk) = point%axis
+      state%crack(lane, :, chunk) = point%crack
+   end subroutine return_lane
+
+   !> Stress at the start of the step [Pa]: recomputed, because nearly no element needs it.
+   function previous_stress(chunks, chunk, lane, rock, fields, dt, state) result(stress)
+      type(chunks_type), intent(in) :: chunks
+      integer, intent(in) :: chunk
+      integer, intent(in) :: lane
+      type(rock_type), intent(in) :: rock
+      type(fields_type), intent(in) :: fields
+      real(wp), intent(in) :: dt
+      type(inelastic_type), intent(in) :: state
+      real(wp) :: stress(4)
+
+      real(wp) :: du(4), strain(4), rotation(3)
+
+      associate (corner => chunks%node(lane, :, chunk))
+         call gather_previous(corner, fields%u, fields%v, dt, du)
+         strain(3) = 0.0_wp
+         if (chunks%axisymmetric) strain(3) = chunks%hoop(lane, chunk) &
+            *sum(fields%u(1, corner) - dt*fields%v(1, corner))
+      end associate
+      call strains(1, chunks%gradient(lane, :, chunk), du, strain, rotation)
+      call elastic_stress(1, rock%lame, rock%shear, strain, state%strain(lane, :, chunk), stress)
+   end function previous_stress
+
+end module lithofrac_mechanics_internal_force

@@ -1,0 +1,197 @@
+!> Chunk kernels of the constant-strain triangle: gather, strain, stress, nodal force, scatter.
+!>
+!> Green-Naghdi as small strain in the unrotated frame, work-conjugate. With F = R U on the
+!> reference geometry the strain is U - I, the stress T comes from the material, and
+!>
+!>    P = R (T - (b/tr U) J),   b = T : (J U),   J = [[0, -1], [1, 0]],
+!>
+!> so that P : dF = T : dU exactly: no energy drifts in closed cycles of strain and rotation.
+!> Components: xx, yy, zz, xy; shear strain is engineering (Klerck 2004, section 2.1).
+module lithofrac_mechanics_kinematics
+   use lithofrac_base_kinds, only: wp
+   use lithofrac_mechanics_chunks, only: width
+   implicit none
+   private
+
+   public :: elastic_stress, gather, gather_previous, hoop_strain, nodal_forces
+   public :: scatter, scatter_hoop, strains
+
+contains
+
+   !> Displacements of corners 2 and 3 relative to corner 1.
+   pure subroutine gather(node, u, du)
+      integer, intent(in) :: node(width, 3)
+      real(wp), intent(in), contiguous :: u(:, :)   !! (2, n_nodes) displacement [m]
+      real(wp), intent(out) :: du(width, 4)         !! x2, y2, x3, y3 relative to corner 1 [m]
+
+      integer :: i
+
+      do i = 1, width
+         du(i, 1) = u(1, node(i, 2)) - u(1, node(i, 1))
+         du(i, 2) = u(2, node(i, 2)) - u(2, node(i, 1))
+         du(i, 3) = u(1, node(i, 3)) - u(1, node(i, 1))
+         du(i, 4) = u(2, node(i, 3)) - u(2, node(i, 1))
+      end do
+   end subroutine gather
+
+   !> The same for one element, one step earlier: from u - dt v.
+   pure subroutine gather_previous(corner, u, v, dt, du)
+      integer, intent(in) :: corner(3)
+      real(wp), intent(in), contiguous :: u(:, :)   !! (2, n_nodes) displacement now [m]
+      real(wp), intent(in), contiguous :: v(:, :)   !! (2, n_nodes) velocity that led to it [m/s]
+      real(wp), intent(in) :: dt                    !! step that led to it [s]
+      real(wp), intent(out) :: du(4)                !! x2, y2, x3, y3 relative to corner 1 [m]
+
+      real(wp) :: before(2, 3)
+
+      before = u(:, corner) - dt*v(:, corner)
+      du(1:2) = before(:, 2) - before(:, 1)
+      du(3:4) = before(:, 3) - before(:, 1)
+   end subroutine gather_previous
+
+   !> In-plane strain U - I and rotation R of the polar decomposition F = R U.
+   pure subroutine strains(n, gradient, du, strain, rotation)
+      integer, intent(in) :: n                      !! lanes
+      real(wp), intent(in) :: gradient(n, 4)        !! of the shape functions [1/m]
+      real(wp), intent(in) :: du(n, 4)              !! [m]
+      real(wp), intent(inout) :: strain(n, 4)       !! xx, yy, xy are set; zz is left alone
+      real(wp), intent(out) :: rotation(n, 3)       !! cos, sin, 1/tr U
+
+      integer :: i
+      real(wp) :: h11, h12, h21, h22, c, s, t, r, versine
+
+      !$omp simd private(h11, h12, h21, h22, c, s, t, r, versine)
+      do i = 1, n
+         h11 = du(i, 1)*gradient(i, 1) + du(i, 3)*gradient(i, 3)
+         h12 = du(i, 1)*gradient(i, 2) + du(i, 3)*gradient(i, 4)
+         h21 = du(i, 2)*gradient(i, 1) + du(i, 4)*gradient(i, 3)
+         h22 = du(i, 2)*gradient(i, 2) + du(i, 4)*gradient(i, 4)
+         c = 2.0_wp + h11 + h22
+         t = h21 - h12
+         r = 1.0_wp/sqrt(c*c + t*t)
+         rotation(i, 3) = r
+         c = c*r
+         s = t*r
+         ! 1 - cos without cancellation, so that small strains keep their digits
+         versine = merge(s*s/(1.0_wp + abs(c)), 1.0_wp - c, c > 0.0_wp)
+         rotation(i, 1) = c
+         rotation(i, 2) = s
+         strain(i, 1) = h11 - versine*(1.0_wp + h11) + s*h21
+         strain(i, 2) = h22 - versine*(1.0_wp + h22) - s*h12
+         strain(i, 4) = c*(h12 + h21) + s*(h22 - h11)
+      end do
+   end subroutine strains
+
+   !> Hoop strain of axisymmetry, from the mean radius of the element (no lock-up at the axis).
+   pure subroutine hoop_strain(node, u, hoop, strain_zz)
+      integer, intent(in) :: node(width, 3)
+      real(wp), intent(in), contiguous :: u(:, :)   !! (2, n_nodes) [m]
+      real(wp), intent(in) :: hoop(width)           !! 1/(3 mean radius) [1/m]
+      real(wp), intent(out) :: strain_zz(width)
+
+      integer :: i
+
+      do i = 1, width
+         strain_zz(i) = hoop(i)*(u(1, node(i, 1)) + u(1, node(i, 2)) + u(1, node(i, 3)))
+      end do
+   end subroutine hoop_strain
+
+   !> Isotropic elastic stress of the elastic strain.
+   pure subroutine elastic_stress(n, lame, shear, strain, inelastic, stress)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: lame                  !! [Pa]
+      real(wp), intent(in) :: shear                 !! [Pa]
+      real(wp), intent(in) :: strain(n, 4)
+      real(wp), intent(in) :: inelastic(n, 4)       !! inelastic strain
+      real(wp), intent(out) :: stress(n, 4)         !! [Pa]
+
+      integer :: i
+      real(wp) :: e1, e2, e3, pressure
+
+      !$omp simd private(e1, e2, e3, pressure)
+      do i = 1, n
+         e1 = strain(i, 1) - inelastic(i, 1)
+         e2 = strain(i, 2) - inelastic(i, 2)
+         e3 = strain(i, 3) - inelastic(i, 3)
+         pressure = lame*(e1 + e2 + e3)
+         stress(i, 1) = pressure + 2.0_wp*shear*e1
+         stress(i, 2) = pressure + 2.0_wp*shear*e2
+         stress(i, 3) = pressure + 2.0_wp*shear*e3
+         stress(i, 4) = shear*(strain(i, 4) - inelastic(i, 4))
+      end do
+   end subroutine elastic_stress
+
+   !> Internal forces on corners 2 and 3; corner 1 takes the opposite of their sum.
+   pure subroutine nodal_forces(gradient, volume, strain, rotation, stress, force)
+      real(wp), intent(in) :: gradient(width, 4)    !! [1/m]
+      real(wp), intent(in) :: volume(width)         !! [m3] per metre or per radian
+      real(wp), intent(in) :: strain(width, 4)
+      real(wp), intent(in) :: rotation(width, 3)    !! cos, sin, 1/tr U
+      real(wp), intent(in) :: stress(width, 4)      !! unrotated [Pa]
+      real(wp), intent(out) :: force(width, 4)      !! x2, y2, x3, y3 [N] per metre or per radian
+
+      integer :: i
+      real(wp) :: b, s11, s12, s21, s22, p11, p12, p21, p22
+
+      !$omp simd private(b, s11, s12, s21, s22, p11, p12, p21, p22)
+      do i = 1, width
+         b = rotation(i, 3)*(0.5_wp*(stress(i, 2) - stress(i, 1))*strain(i, 4) &
+            + stress(i, 4)*(strain(i, 1) - strain(i, 2)))
+         s11 = volume(i)*stress(i, 1)
+         s22 = volume(i)*stress(i, 2)
+         s12 = volume(i)*(stress(i, 4) + b)
+         s21 = volume(i)*(stress(i, 4) - b)
+         p11 = rotation(i, 1)*s11 - rotation(i, 2)*s21
+         p12 = rotation(i, 1)*s12 - rotation(i, 2)*s22
+         p21 = rotation(i, 2)*s11 + rotation(i, 1)*s21
+         p22 = rotation(i, 2)*s12 + rotation(i, 1)*s22
+         force(i, 1) = p11*gradient(i, 1) + p12*gradient(i, 2)
+         force(i, 2) = p21*gradient(i, 1) + p22*gradient(i, 2)
+         force(i, 3) = p11*gradient(i, 3) + p12*gradient(i, 4)
+         force(i, 4) = p21*gradient(i, 3) + p22*gradient(i, 4)
+      end do
+   end subroutine nodal_forces
+
+   !> Add the forces of a chunk to the buffer of its block, in the order of its elements.
+   pure subroutine scatter(node, shift, force, buffer)
+      integer, intent(in) :: node(width, 3)
+      integer, intent(in) :: shift                      !! node number minus place in `buffer`
+      real(wp), intent(in) :: force(width, 4)           !! x2, y2, x3, y3 [N]
+      real(wp), intent(inout), contiguous :: buffer(:, :) !! (2, nodes of the block) [N]
+
+      integer :: i, a, b, c
+
+      do i = 1, width
+         a = node(i, 1) - shift
+         b = node(i, 2) - shift
+         c = node(i, 3) - shift
+         buffer(1, b) = buffer(1, b) + force(i, 1)
+         buffer(2, b) = buffer(2, b) + force(i, 2)
+         buffer(1, c) = buffer(1, c) + force(i, 3)
+         buffer(2, c) = buffer(2, c) + force(i, 4)
+         buffer(1, a) = buffer(1, a) - (force(i, 1) + force(i, 3))
+         buffer(2, a) = buffer(2, a) - (force(i, 2) + force(i, 4))
+      end do
+   end subroutine scatter
+
+   !> Radial force of the hoop stress, shared by the three corners.
+   pure subroutine scatter_hoop(node, shift, hoop, volume, stress_zz, buffer)
+      integer, intent(in) :: node(width, 3)
+      integer, intent(in) :: shift
+      real(wp), intent(in) :: hoop(width)               !! 1/(3 mean radius) [1/m]
+      real(wp), intent(in) :: volume(width)             !! [m3/rad]
+      real(wp), intent(in) :: stress_zz(width)          !! hoop stress [Pa]
+      real(wp), intent(inout), contiguous :: buffer(:, :)
+
+      integer :: i
+      real(wp) :: share
+
+      do i = 1, width
+         share = hoop(i)*volume(i)*stress_zz(i)
+         buffer(1, node(i, 1) - shift) = buffer(1, node(i, 1) - shift) + share
+         buffer(1, node(i, 2) - shift) = buffer(1, node(i, 2) - shift) + share
+         buffer(1, node(i, 3) - shift) = buffer(1, node(i, 3) - shift) + share
+      end do
+   end subroutine scatter_hoop
+
+end module lithofrac_mechanics_kinematics

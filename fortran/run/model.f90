@@ -1,0 +1,217 @@
+!> One simulation: everything that is needed to take a step or to save a run.
+module lithofrac_run_model
+   use lithofrac_base_kinds, only: pi, wp
+   use lithofrac_base_status, only: bad_input, ok, set_failure, status_type
+   use lithofrac_material_rock, only: rock_type
+   use lithofrac_mechanics_blocks, only: blocks_type, new_blocks
+   use lithofrac_mechanics_chunks, only: chunks_type, new_chunks
+   use lithofrac_mechanics_fields, only: fields_type, inelastic_type, new_fields, new_inelastic
+   use lithofrac_mechanics_loads, only: pressure_type, ramp_type, velocity_type
+   use lithofrac_mechanics_lumped_mass, only: corner_masses
+   use lithofrac_mesh_mesh, only: mesh_type, new_mesh
+   use lithofrac_run_damping, only: affine_type, n_moments
+   use lithofrac_run_energy, only: ledger_type
+   use lithofrac_run_node_update, only: n_sums
+   use lithofrac_run_settings, only: settings_type
+   use lithofrac_run_time_step, only: critical_step
+   implicit none
+   private
+
+   public :: add_pressure, add_velocity, model_type, new_model, set_motion
+
+   type :: model_type
+      type(mesh_type) :: mesh
+      type(chunks_type) :: chunks
+      type(blocks_type) :: blocks
+      type(rock_type), allocatable :: rocks(:)            !! (n_bodies)
+      type(fields_type) :: fields
+      type(inelastic_type) :: state
+      type(velocity_type), allocatable :: velocities(:)
+      type(pressure_type), allocatable :: pressures(:)
+      type(settings_type) :: settings
+      type(ledger_type) :: ledger
+      real(wp) :: dt = 0.0_wp                             !! [s]
+      real(wp) :: critical = 0.0_wp                       !! smallest exact element limit [s]
+      integer :: critical_element = 0
+      integer :: step = 0                                 !! fields are at time step*dt
+      logical :: started = .false.                        !! forces of the state are known
+      real(wp), allocatable :: lowest_frequency(:)        !! (n_bodies) estimate [1/s]
+      real(wp), allocatable :: alpha(:)                   !! (n_bodies) damping [1/s]
+      type(affine_type), allocatable :: affine(:)         !! (n_bodies)
+      real(wp), allocatable :: moments(:, :)              !! (n_moments, n_runs)
+      real(wp), allocatable :: sums(:, :)                 !! (n_sums, n_runs)
+      real(wp), allocatable :: reference_u(:, :)          !! state of the last Rayleigh quotient
+      real(wp), allocatable :: reference_f(:, :)
+   end type model_type
+
+contains
+
+   !> Build a model at rest.
+   subroutine new_model(model, nodes, triangles, body, axisymmetric, rocks, band_width, &
+         settings, status)
+      type(model_type), intent(out) :: model
+      real(wp), intent(in) :: nodes(:, :)       !! (2, n_nodes) [m]
+      integer, intent(in) :: triangles(:, :)    !! (3, n_elements)
+      integer, intent(in) :: body(:)            !! (n_elements)
+      logical, intent(in) :: axisymmetric
+      type(rock_type), intent(in) :: rocks(:)   !! (n_bodies)
+      real(wp), intent(in) :: band_width(:)     !! (n_elements) crack band width [m]
+      type(settings_type), intent(in) :: settings
+      type(status_type), intent(out) :: status
+
+      call new_mesh(model%mesh, nodes, triangles, body, status)
+      if (status%code /= ok) return
+      if (size(rocks) /= model%mesh%n_bodies) then
+         call set_failure(status, bad_input, "model: one material a body is needed")
+         return
+      end if
+      if (axisymmetric .and. any(nodes(1, :) < 0.0_wp)) then
+         call set_failure(status, bad_input, "model: a radius is negative")
+         return
+      end if
+      model%rocks = rocks
+      model%settings = settings
+      call new_chunks(model%chunks, model%mesh, axisymmetric)
+      call new_blocks(model%blocks, model%chunks, model%mesh)
+      call new_fields(model%fields, model%mesh%n_nodes)
+      call new_inelastic(model%state, model%chunks, model%rocks, band_width)
+      allocate (model%velocities(0), model%pressures(0))
+      allocate (model%affine(model%mesh%n_bodies))
+      allocate (model%alpha(model%mesh%n_bodies), source=max(0.0_wp, settings%damping_alpha))
+      allocate (model%moments(n_moments, model%blocks%n_runs), source=0.0_wp)
+      allocate (model%sums(n_sums, model%blocks%n_runs), source=0.0_wp)
+      call set_mass(model)
+      call set_time_step(model)
+      call set_frequencies(model)
+   end subroutine new_model
+
+   subroutine set_mass(model)
+      type(model_type), intent(inout) :: model
+
+      integer :: element
+
+      do element = 1, model%mesh%n_elements
+         associate (corner => model%mesh%triangles(:, element))
+            model%fields%mass(corner) = model%fields%mass(corner) + corner_masses(model%mesh, &
+               element, model%rocks(model%mesh%body(element))%density, model%chunks%axisymmetric)
+         end associate
+      end do
+      model%fields%free_mass = spread(model%fields%mass, 1, 2)
+      model%fields%inverse_mass = 1.0_wp/model%fields%free_mass
+   end subroutine set_mass
+
+   subroutine set_time_step(model)
+      type(model_type), intent(inout) :: model
+
+      integer :: element
+      real(wp) :: dt
+
+      model%critical = huge(1.0_wp)
+      do element = 1, model%mesh%n_elements
+         dt = critical_step(model%mesh, model%chunks, element, &
+            model%rocks(model%mesh%body(element)))
+         if (dt >= model%critical) cycle
+         model%critical = dt
+         model%critical_element = element
+      end do
+      model%dt = model%settings%time_step_factor*model%critical
+   end subroutine set_time_step
+
+   !> Lowest frequency of a bar as long as the body, held at one end: a floor of the quotient.
+   subroutine set_frequencies(model)
+      type(model_type), intent(inout) :: model
+
+      integer :: body, k
+      real(wp) :: extent(2)
+
+      allocate (model%lowest_frequency(model%mesh%n_bodies))
+      do body = 1, model%mesh%n_bodies
+         do k = 1, 2
+            extent(k) = maxval(model%mesh%nodes(k, :), model%mesh%body_of_node == body) &
+               - minval(model%mesh%nodes(k, :), model%mesh%body_of_node == body)
+         end do
+         associate (rock => model%rocks(body))
+            model%lowest_frequency(body) = &
+               0.5_wp*pi*sqrt(rock%young/rock%density)/maxval(extent)
+         end associate
+      end do
+   end subroutine set_frequencies
+
+   !> Prescribe one velocity component of some nodes.
+   subroutine add_velocity(model, node, component, speed, ramp, status)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: node(:)
+      integer, intent(in) :: component      !! 1 or 2
+      real(wp), intent(in) :: speed         !! [m/s]
+      type(ramp_type), intent(in) :: ramp
+      type(status_type), intent(out) :: status
+
+      type(velocity_type) :: load
+
+      if (component < 1 .or. component > 2) then
+         call set_failure(status, bad_input, "velocity: the component is 1 or 2")
+      else if (any(node < 1) .or. any(node > model%mesh%n_nodes) .or. size(node) == 0) then
+         call set_failure(status, bad_input, "velocity: a node does not exist")
+      else if (any(model%fields%free_mass(component, node) <= 0.0_wp)) then
+         call set_failure(status, bad_input, "velocity: a component is prescribed twice")
+      else
+         load%node = node
+         load%component = component
+         load%speed = speed
+         load%ramp = ramp
+         allocate (load%before(size(node)), source=0.0_wp)
+         model%fields%free_mass(component, node) = 0.0_wp
+         model%fields%inverse_mass(component, node) = 0.0_wp
+         model%velocities = [model%velocities, load]
+      end if
+   end subroutine add_velocity
+
+   !> Load edges by a follower pressure.
+   subroutine add_pressure(model, edge, pressure, stiffness, ramp, status)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: edge(:, :)     !! (2, n) nodes, material on the left
+      real(wp), intent(in) :: pressure      !! [Pa]
+      real(wp), intent(in) :: stiffness     !! [Pa/m] of outward displacement
+      type(ramp_type), intent(in) :: ramp
+      type(status_type), intent(out) :: status
+
+      type(pressure_type) :: load
+      real(wp) :: along(2)
+      integer :: i
+
+      if (any(edge < 1) .or. any(edge > model%mesh%n_nodes) .or. size(edge) == 0) then
+         call set_failure(status, bad_input, "pressure: an edge names a node that does not exist")
+         return
+      end if
+      load%edge = edge
+      load%pressure = pressure
+      load%stiffness = stiffness
+      load%ramp = ramp
+      allocate (load%normal(2, size(edge, 2)), load%length(size(edge, 2)))
+      allocate (load%force(2, 2, size(edge, 2)), source=0.0_wp)
+      do i = 1, size(edge, 2)
+         along = model%mesh%nodes(:, edge(2, i)) - model%mesh%nodes(:, edge(1, i))
+         load%length(i) = norm2(along)
+         load%normal(:, i) = [along(2), -along(1)]/load%length(i)
+         if (model%chunks%axisymmetric) load%length(i) = load%length(i) &
+            *0.5_wp*sum(model%mesh%nodes(1, edge(:, i)))
+      end do
+      model%pressures = [model%pressures, load]
+   end subroutine add_pressure
+
+   !> Start from given displacements and velocities at time 0.
+   subroutine set_motion(model, u, v, status)
+      type(model_type), intent(inout) :: model
+      real(wp), intent(in) :: u(:, :)       !! (2, n_nodes) [m]
+      real(wp), intent(in) :: v(:, :)       !! (2, n_nodes) [m/s]
+      type(status_type), intent(out) :: status
+
+      if (model%started) then
+         call set_failure(status, bad_input, "motion: the run has started")
+         return
+      end if
+      model%fields%u = u
+      model%fields%v = v
+   end subroutine set_motion
+
+end module lithofrac_run_model

@@ -1,0 +1,278 @@
+!> The time loop: forces, boundary, nodes, and again.
+!>
+!> Between calls the fields are at time n: displacement u(n), internal force of u(n) and the
+!> velocity of the half step after it. The next call starts by moving the nodes.
+module lithofrac_run_step
+   use lithofrac_base_kinds, only: wp
+   use lithofrac_base_status, only: bad_input, no_return_map, not_finite, ok, set_failure, &
+      status_type
+   use lithofrac_mechanics_blocks, only: assemble
+   use lithofrac_mechanics_internal_force, only: chunk_force, failure_type
+   use lithofrac_mechanics_loads, only: apply_pressure, apply_velocity, work_after, work_before
+   use lithofrac_run_damping, only: fit_affine, rayleigh_frequency
+   use lithofrac_run_model, only: model_type
+   use lithofrac_run_node_update, only: sum_moments, update_affine, update_ground, &
+      update_plain
+   use lithofrac_run_settings, only: no_damping, relative_to_affine
+   implicit none
+   private
+
+   public :: advance, start
+
+   integer, parameter :: quotient_interval = 100      !! steps between Rayleigh quotients
+   real(wp), parameter :: largest_alpha_dt = 0.05_wp  !! keeps the lagged drag stable
+
+contains
+
+   !> Forces and half-step velocity of time 0.
+   subroutine start(model, status)
+      type(model_type), intent(inout) :: model
+      type(status_type), intent(out) :: status
+
+      type(failure_type), allocatable :: failures(:)
+      integer :: block, run
+
+      if (model%started) return
+      allocate (failures(model%blocks%n_blocks))
+      do block = 1, model%blocks%n_blocks
+         call block_force(model, block, failures(block))
+      end do
+      call report_failure(model, failures, status)
+      if (status%code /= ok) return
+      do run = 1, model%blocks%n_runs
+         call assemble(model%blocks, run, model%fields%internal)
+      end do
+      call load_boundary(model)
+      model%fields%v = model%fields%v - 0.5_wp*model%dt*model%fields%inverse_mass &
+         *(model%fields%external - model%fields%internal)
+      do run = 1, model%blocks%n_runs
+         model%moments(:, run) = sum_moments(model%fields, model%mesh%nodes, &
+            model%blocks%first_node(run), model%blocks%first_node(run + 1) - 1, 0.0_wp)
+      end do
+      call set_damping(model)
+      do run = 1, model%blocks%n_runs
+         call move_run(model, run, drift=.false.)
+      end do
+      model%started = .true.
+      call check_finite(model, status)
+   end subroutine start
+
+   !> Take `n_steps` steps.
+   !>
+   !> On a failure the model stays at the step that failed and can be looked at, not resumed.
+   subroutine advance(model, n_steps, threads, status)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: n_steps
+      integer, intent(in) :: threads
+      type(status_type), intent(out) :: status
+
+      type(failure_type), allocatable :: failures(:)
+      integer :: k, block, run
+      logical :: failed
+
+      if (n_steps < 0 .or. threads < 1) then
+         call set_failure(status, bad_input, "advance: needs steps >= 0 and threads >= 1")
+         return
+      end if
+      call start(model, status)
+      if (status%code /= ok .or. n_steps == 0) return
+      allocate (failures(model%blocks%n_blocks))
+      failed = .false.
+      !$omp parallel default(shared) private(k, block, run) num_threads(threads)
+      !$omp do schedule(static)
+      do run = 1, model%blocks%n_runs
+         associate (first => model%blocks%first_node(run), &
+               last => model%blocks%first_node(run + 1) - 1)
+            model%fields%u(:, first:last) = model%fields%u(:, first:last) &
+               + model%dt*model%fields%v(:, first:last)
+         end associate
+      end do
+      !$omp end do
+      do k = 1, n_steps
+         !$omp do schedule(static)
+         do block = 1, model%blocks%n_blocks
+            call block_force(model, block, failures(block))
+         end do
+         !$omp end do
+         !$omp single
+         call finish_step(model)
+         failed = any(failures%code /= ok)
+         !$omp end single
+         if (failed) exit
+         !$omp do schedule(static)
+         do run = 1, model%blocks%n_runs
+            call assemble(model%blocks, run, model%fields%internal)
+            call move_run(model, run, drift=k < n_steps)
+         end do
+         !$omp end do
+      end do
+      !$omp end parallel
+      call report_failure(model, failures, status)
+      if (status%code == ok) call check_finite(model, status)
+   end subroutine advance
+
+   !> Element forces of one block of chunks.
+   subroutine block_force(model, block, failure)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: block
+      type(failure_type), intent(inout) :: failure
+
+      integer :: chunk, first, last, shift
+
+      first = model%blocks%offset(block) + 1
+      last = first + model%blocks%high(block) - model%blocks%low(block)
+      shift = model%blocks%low(block) - 1
+      model%blocks%buffer(:, first:last) = 0.0_wp
+      do chunk = model%blocks%first_chunk(block), model%blocks%first_chunk(block + 1) - 1
+         call chunk_force(model%chunks, chunk, model%rocks(model%chunks%body(chunk)), &
+            model%fields, merge(model%dt, 0.0_wp, model%started), model%state, shift, &
+            model%blocks%buffer(:, first:last), failure)
+      end do
+   end subroutine block_force
+
+   !> Book the step that ends, then set the boundary and the damping of the next.
+   subroutine finish_step(model)
+      type(model_type), intent(inout) :: model
+
+      associate (ledger => model%ledger, dt => model%dt)
+         if (model%step > 0) ledger%external = ledger%external &
+            + work_before(model%velocities, model%pressures, dt, model%fields)
+         ledger%external = ledger%external &
+            + work_after(model%velocities, model%pressures, dt, model%fields)
+         if (model%step > 0) ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(2, :))
+         ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(3, :))
+      end associate
+      model%step = model%step + 1
+      call load_boundary(model)
+      call set_damping(model)
+   end subroutine finish_step
+
+   subroutine load_boundary(model)
+      type(model_type), intent(inout) :: model
+
+      integer :: load, i
+
+      do load = 1, size(model%pressures)
+         do i = 1, size(model%pressures(load)%edge, 2)
+            model%fields%external(:, model%pressures(load)%edge(:, i)) = 0.0_wp
+         end do
+      end do
+      do load = 1, size(model%pressures)
+         call apply_pressure(model%pressures(load), model%mesh%nodes, &
+            model%chunks%axisymmetric, model%step*model%dt, model%fields)
+      end do
+      do load = 1, size(model%velocities)
+         call apply_velocity(model%velocities(load), (model%step + 0.5_wp)*model%dt, model%fields)
+      end do
+   end subroutine load_boundary
+
+   subroutine set_damping(model)
+      type(model_type), intent(inout) :: model
+
+      integer :: body, run
+      real(wp), allocatable :: sums(:, :)
+
+      if (model%settings%damping == no_damping) return
+      if (model%settings%damping_alpha < 0.0_wp) call update_alpha(model)
+      if (model%settings%damping /= relative_to_affine) return
+      allocate (sums(size(model%moments, 1), model%mesh%n_bodies), source=0.0_wp)
+      do run = 1, model%blocks%n_runs
+         body = model%mesh%body_of_node(model%blocks%first_node(run))
+         sums(:, body) = sums(:, body) + model%moments(:, run)
+      end do
+      do body = 1, model%mesh%n_bodies
+         model%affine(body) = fit_affine(sums(:, body))
+      end do
+   end subroutine set_damping
+
+   !> Rayleigh quotient of one increment in every hundred: the lowest frequency in motion.
+   subroutine update_alpha(model)
+      type(model_type), intent(inout) :: model
+
+      integer :: body
+
+      associate (fields => model%fields)
+         select case (mod(model%step, quotient_interval))
+         case (0)
+            model%reference_u = fields%u
+            model%reference_f = fields%internal
+            if (model%step == 0) model%alpha = alpha_of(model, model%lowest_frequency)
+         case (10)
+            do body = 1, model%mesh%n_bodies
+               model%alpha(body) = alpha_of(model, rayleigh_frequency(body, &
+                  model%mesh%body_of_node, fields%free_mass, fields%u - model%reference_u, &
+                  fields%internal - model%reference_f, model%lowest_frequency(body)))
+            end do
+         end select
+      end associate
+   end subroutine update_alpha
+
+   elemental function alpha_of(model, omega) result(alpha)
+      type(model_type), intent(in) :: model
+      real(wp), intent(in) :: omega   !! [1/s]
+      real(wp) :: alpha
+
+      alpha = min(2.0_wp*model%settings%damping_fraction*omega, largest_alpha_dt/model%dt)
+   end function alpha_of
+
+   !> New velocities of a run of nodes, and new positions when `drift`.
+   subroutine move_run(model, run, drift)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: run
+      logical, intent(in) :: drift
+
+      integer :: first, last, body
+
+      first = model%blocks%first_node(run)
+      last = model%blocks%first_node(run + 1) - 1
+      body = model%mesh%body_of_node(first)
+      select case (model%settings%damping)
+      case (no_damping)
+         call update_plain(model%fields, first, last, model%dt, drift, model%sums(:, run))
+      case (relative_to_affine)
+         call update_affine(model%fields, model%mesh%nodes, first, last, model%dt, drift, &
+            model%alpha(body), model%affine(body), model%sums(:, run), model%moments(:, run))
+      case default
+         call update_ground(model%fields, first, last, model%dt, drift, model%alpha(body), &
+            model%sums(:, run))
+      end select
+   end subroutine move_run
+
+   !> Put the first failure into words.
+   subroutine report_failure(model, failures, status)
+      type(model_type), intent(in) :: model
+      type(failure_type), intent(in) :: failures(:)
+      type(status_type), intent(out) :: status
+
+      integer :: block
+      character(len=200) :: words
+
+      do block = 1, size(failures)
+         if (failures(block)%code == ok) cycle
+         write (words, '(a, i0, a, es11.4, a, i0, a, 4es11.3, a)') "step ", model%step, &
+            ", time ", model%step*model%dt, " s, element ", failures(block)%element, &
+            ": no consistent return of the trial stress", failures(block)%trial*1.0e-6_wp, &
+            " MPa (xx, yy, zz, xy)"
+         call set_failure(status, no_return_map, trim(words))
+         return
+      end do
+   end subroutine report_failure
+
+   subroutine check_finite(model, status)
+      type(model_type), intent(in) :: model
+      type(status_type), intent(out) :: status
+
+      character(len=160) :: words
+      integer :: node
+
+      if (abs(sum(model%sums(1, :))) <= huge(1.0_wp)) return
+      do node = 1, model%mesh%n_nodes
+         if (.not. all(abs(model%fields%v(:, node)) <= huge(1.0_wp))) exit
+      end do
+      write (words, '(a, i0, a, es11.4, a, i0, a)') "step ", model%step, ", time ", &
+         model%step*model%dt, " s, node ", min(node, model%mesh%n_nodes), &
+         ": velocity is not finite; try a smaller time_step_factor or loading speed"
+      call set_failure(status, not_finite, trim(words))
+   end subroutine check_finite
+
+end module lithofrac_run_step

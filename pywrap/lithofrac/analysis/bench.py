@@ -1,0 +1,76 @@
+"""Curves of the material-point bench read back (`lithofrac point`)."""
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from lithofrac.analysis.strength import Peak, first_peak
+from lithofrac.config.material import Material
+
+NAME = re.compile(r"^(?P<test>\w+)_p(?P<confinement>\d+(\.\d+)?)$")
+
+
+@dataclass(frozen=True)
+class Bench:
+    """One curve, kept as `ROCK/TEST_pCONFINEMENT.parquet`."""
+
+    path: Path
+
+    @property
+    def rock(self) -> str:
+        """Name of the rock, a file in `configs/materials/`."""
+        return self.path.parent.name
+
+    @property
+    def test(self) -> str:
+        """Test that was driven: triaxial, plane_strain, ..."""
+        return self._name["test"]
+
+    @property
+    def confinement_MPa(self) -> float:
+        """Confinement of the test."""
+        return float(self._name["confinement"])
+
+    @cached_property
+    def curve(self) -> pd.DataFrame:
+        """The curve, columns as `point.drive` gives them."""
+        return pd.read_parquet(self.path)
+
+    @cached_property
+    def material(self) -> Material:
+        """The rock."""
+        return Material.load(self.rock)
+
+    @cached_property
+    def peak(self) -> Peak | None:
+        """First peak of the axial stress [MPa], or None."""
+        return first_peak(self.curve["axial_strain"], self.curve["axial_stress_MPa"])
+
+    def evolution(self) -> pd.DataFrame:
+        """Strength parameters along the curve: cohesion_MPa, friction and dilation_angle_deg."""
+        strain, cohesion, friction, dilation = self.material.table
+        here = self.curve["plastic_strain"].to_numpy()
+        return pd.DataFrame(
+            {
+                "cohesion_MPa": np.interp(here, strain, cohesion) / 1e6,
+                "friction_angle_deg": np.degrees(np.interp(here, strain, friction)),
+                "dilation_angle_deg": np.degrees(np.interp(here, strain, dilation)),
+            }
+        )
+
+    @property
+    def _name(self) -> re.Match:
+        found = NAME.match(self.path.stem)
+        if found is None:
+            raise ValueError(f"{self.path}: file name, expected TEST_pCONFINEMENT.parquet")
+        return found
+
+
+def find_bench(paths: list[Path]) -> list[Bench]:
+    """Curves of files, by rock, test and confinement."""
+    curves = [Bench(Path(path)) for path in paths]
+    return sorted(curves, key=lambda curve: (curve.rock, curve.test, curve.confinement_MPa))

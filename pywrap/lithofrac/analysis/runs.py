@@ -1,0 +1,84 @@
+"""Results folders read back: what a run was, and what it gave."""
+
+import json
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from lithofrac.analysis.strength import Peak, first_peak
+from lithofrac.config.material import Material
+from lithofrac.config.yaml_file import read_yaml
+
+
+@dataclass(frozen=True)
+class Run:
+    """One results folder; files are read when they are asked for."""
+
+    folder: Path
+
+    @property
+    def name(self) -> str:
+        """Name of the case, which is the name of its folder."""
+        return self.folder.name
+
+    @property
+    def family(self) -> str:
+        """Name without confinement and what follows it: all runs of one test."""
+        return re.sub(r"_p\d.*$", "", self.name)
+
+    @cached_property
+    def summary(self) -> dict:
+        """`summary.json`."""
+        return json.loads((self.folder / "summary.json").read_text())
+
+    @cached_property
+    def case(self) -> dict:
+        """The case as it was run (`case.yaml`)."""
+        return read_yaml(self.folder / "case.yaml")
+
+    @cached_property
+    def history(self) -> pd.DataFrame:
+        """`history.parquet` of the axial loading: from the last row without axial strain on."""
+        table = pd.read_parquet(self.folder / "history.parquet")
+        before = np.flatnonzero(table["axial_strain"] <= 0.0)
+        return table.iloc[before[-1] if before.size else 0 :].reset_index(drop=True)
+
+    @cached_property
+    def energy(self) -> pd.DataFrame:
+        """`energy.parquet`."""
+        return pd.read_parquet(self.folder / "energy.parquet")
+
+    @cached_property
+    def rock(self) -> Material:
+        """Material of the specimen."""
+        return Material.from_values(self.case["material"], str(self.folder / "case.yaml"))
+
+    @property
+    def test(self) -> str:
+        """Kind of the scene: triaxial, plane_strain, ..."""
+        return self.case["scene"]["kind"]
+
+    @property
+    def confinement_MPa(self) -> float:
+        """Lateral pressure at the start of axial loading."""
+        return float(self.case["loading"].get("confinement_MPa", 0.0))
+
+    @property
+    def stiffness(self) -> float:
+        """Lateral stiffness over Young's modulus; 0 is a soft pressure."""
+        return float(self.case["loading"].get("lateral_stiffness_over_young", 0.0))
+
+    @cached_property
+    def peak(self) -> Peak | None:
+        """First peak of the axial stress [MPa], or None."""
+        return first_peak(self.history["axial_strain"], self.history["axial_stress_MPa"])
+
+
+def find_runs(paths: list[Path]) -> list[Run]:
+    """Runs of folders, or of files that lie in them; each once, in the order given."""
+    folders = [path if path.is_dir() else path.parent for path in map(Path, paths)]
+    return [Run(folder) for folder in dict.fromkeys(folders)]

@@ -1,0 +1,195 @@
+"""The numbers behind the figures, one table each: files in, a DataFrame out.
+
+Every function takes the input files and the folder `data/`. Column names carry the unit; `_percent`
+differences are relative to the expected value.
+"""
+
+from pathlib import Path
+
+import pandas as pd
+
+from lithofrac.analysis.bench import find_bench
+from lithofrac.analysis.curves import compare
+from lithofrac.analysis.fit import StrengthLine, fit_line
+from lithofrac.analysis.mohr_coulomb import (
+    first_yield,
+    peak_strength,
+    residual_strength,
+)
+from lithofrac.analysis.runs import Run, find_runs
+from lithofrac.config.material import Material
+from lithofrac.data import Curve, load_curves, measured_strength
+
+MPA = 1e6
+NOT_DIGITISED = "experiment: not digitised"
+SUMMARY = (
+    "status",
+    "elements",
+    "nodes",
+    "steps",
+    "wall_seconds",
+    "core_seconds",
+    "element_steps_per_core_second",
+    "energy_residual",
+    "kinetic_ratio_at_peak",
+)
+
+
+def single_element(inputs: list[Path], data: Path) -> pd.DataFrame:
+    """Peaks of the material-point curves beside their closed form."""
+    rows = []
+    for curve in find_bench(inputs):
+        table, pressure = curve.material.table, curve.confinement_MPa * MPA
+        peak, _ = peak_strength(table, pressure)
+        computed = float(curve.curve["axial_stress_MPa"].max())
+        at_peak = curve.curve.loc[curve.curve["axial_stress_MPa"].idxmax()]
+        rows.append(
+            {
+                "rock": curve.rock,
+                "test": curve.test,
+                "confinement_MPa": curve.confinement_MPa,
+                "closed_form_MPa": peak / MPA,
+                "strength_MPa": computed,
+                "difference_percent": 100.0 * (computed * MPA / peak - 1.0),
+                "strain_at_peak_percent": 100.0 * at_peak["axial_strain"],
+                "first_yield_MPa": first_yield(table, pressure) / MPA,
+                "residual_MPa": residual_strength(table, pressure) / MPA,
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def strength(inputs: list[Path], data: Path) -> pd.DataFrame:
+    """First peaks of the runs beside the line of their hardening table."""
+    rows = []
+    for run in find_runs(inputs):
+        line = peak_strength(run.rock.table, run.confinement_MPa * MPA)[0] / MPA
+        peak = run.peak
+        rows.append(
+            {
+                "case": run.name,
+                "test": run.test,
+                "confinement_MPa": run.confinement_MPa,
+                "stiffness_over_young": run.stiffness,
+                "table_1_line_MPa": line,
+                "strength_MPa": peak.stress if peak else float("nan"),
+                "above_line_percent": 100.0 * (peak.stress / line - 1.0) if peak else float("nan"),
+                "strain_at_peak_percent": 100.0 * peak.strain if peak else float("nan"),
+                "largest_stress_MPa": float(run.history["axial_stress_MPa"].max()),
+                "note": "" if peak else "no peak",
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def tautona(inputs: list[Path], data: Path) -> pd.DataFrame:
+    """Measured strengths of TauTona quartzite beside the line of a hardening table.
+
+    `inputs` holds one file, the material.
+    """
+    rock = Material.load(inputs[0])
+    table = measured_strength(data, "tautona")
+    line = [peak_strength(rock.table, p * MPA)[0] / MPA for p in table["confinement_MPa"]]
+    inside = (line >= table["strength_min_MPa"]) & (line <= table["strength_max_MPa"])
+    return table.assign(
+        table_1_line_MPa=line,
+        difference_percent=100.0 * (line / table["strength_MPa"] - 1.0),
+        within_range=["yes" if value else "no" for value in inside],
+    )
+
+
+def zigong_line(data: Path) -> StrengthLine:
+    """Line fitted to the strengths of Zigong sandstone [MPa]."""
+    table = measured_strength(data, "zigong")
+    return fit_line(table["confinement_MPa"], table["strength_MPa"])
+
+
+def zigong(inputs: list[Path], data: Path) -> pd.DataFrame:
+    """Measured strengths of Zigong sandstone beside the line fitted to them."""
+    table, line = measured_strength(data, "zigong"), zigong_line(data)
+    fitted = line.at(table["confinement_MPa"])
+    return table.assign(
+        fitted_line_MPa=fitted,
+        difference_percent=100.0 * (fitted / table["strength_MPa"] - 1.0),
+    )
+
+
+def zigong_fit(inputs: list[Path], data: Path) -> pd.DataFrame:
+    """Parameters of the line fitted to Zigong sandstone, with 95 % confidence."""
+    line = zigong_line(data)
+    rows = [
+        ("intercept q [MPa]", line.q, line.q_half),
+        ("slope N [-]", line.n, line.n_half),
+        ("cohesion [MPa]", line.cohesion, None),
+        ("friction angle [degrees]", line.friction_deg, None),
+        ("rms of residuals [MPa]", line.rms, None),
+        ("rms error of a point left out [%]", 100.0 * line.left_out_rms, None),
+    ]
+    return pd.DataFrame(rows, columns=["quantity", "value", "plus_minus"])
+
+
+def run_time(inputs: list[Path], data: Path) -> pd.DataFrame:
+    """Size, cost and energy error of the runs."""
+    rows = [{"case": run.name, **{k: run.summary.get(k) for k in SUMMARY}}
+            for run in find_runs(inputs)]  # fmt: skip
+    return pd.DataFrame(rows, columns=["case", *SUMMARY])
+
+
+def errors(inputs: list[Path], data: Path) -> pd.DataFrame:
+    """Distance of the runs from the digitised curves of Figs 9 and 10, or that there are none."""
+    runs = find_runs(inputs)
+    rows = []
+    for figure in ("9", "10"):
+        curves = load_curves(data, figure)
+        rows += [_error_row(curve, *_computed(curve, runs)) for curve in curves]
+        if not any(curve.sheet.origin == "experiment" for curve in curves):
+            rows.append({"figure": figure, "series": NOT_DIGITISED})
+    columns = [
+        "figure",
+        "series",
+        "origin",
+        "case",
+        "points",
+        "points_left_out",
+        "rms_MPa",
+        "rms_percent",
+        "largest_percent",
+        "reading_error_MPa",
+    ]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def _computed(curve: Curve, runs: list[Run]) -> tuple | None:
+    """Computed x and y to stand beside a digitised curve; empty when there are none."""
+    name = curve.sheet.compare_with
+    if curve.sheet.figure == "10":
+        own = [run for run in runs if run.family == name and run.peak]
+        own = {run.confinement_MPa: run.peak.stress for run in reversed(own)}
+        return list(own), list(own.values())
+    for run in runs:
+        if run.name == name:
+            return run.history["axial_strain"], run.history["axial_stress_MPa"]
+    return [], []
+
+
+def _error_row(curve: Curve, x, y) -> dict:
+    row = {
+        "figure": curve.sheet.figure,
+        "series": curve.sheet.series,
+        "origin": curve.sheet.origin,
+        "case": curve.sheet.compare_with,
+        "reading_error_MPa": curve.y_error,
+    }
+    if len(x) == 0:
+        return row | {"points": 0, "points_left_out": len(curve.x)}
+    try:
+        error = compare(x, y, curve.x, curve.y)
+    except ValueError:
+        return row | {"points": 0, "points_left_out": len(curve.x)}
+    return row | {
+        "points": error.points,
+        "points_left_out": error.left_out,
+        "rms_MPa": error.rms,
+        "rms_percent": 100.0 * error.rms_relative,
+        "largest_percent": 100.0 * error.max_relative,
+    }

@@ -1,0 +1,117 @@
+"""Files that extend others: merge them, and remember which file each key came from.
+
+Mappings merge key by key, anything else is replaced. A mapping of another `kind` replaces the old
+one as a whole, because the keys of two kinds have nothing to do with each other.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from lithofrac.config.errors import ConfigError
+from lithofrac.config.yaml_file import read_yaml
+
+
+@dataclass
+class Draft:
+    """Keys of a config before they are checked.
+
+    Attributes
+    ----------
+    values : the merged keys, without `extends`
+    file : the file that was asked for, named where no better one is known
+    origin : path of a key -> file it was read from
+    beside : folder of the file that names the material; relative paths start there
+    """
+
+    values: dict
+    file: str
+    origin: dict[tuple, str] = field(default_factory=dict)
+    beside: Path = Path()
+
+    def file_of(self, keys: tuple) -> str:
+        """File that a key, or the nearest one above it, was read from."""
+        for end in range(len(keys), 0, -1):
+            if keys[:end] in self.origin:
+                return self.origin[keys[:end]]
+        return self.file
+
+    def put(self, values: Mapping, file: str, beside: Path | None = None, at: tuple = ()) -> None:
+        """Merge keys of another file, which stands in the folder `beside`, over those here."""
+        here = self.values
+        for key in at:
+            here = here[key]
+        for key, value in values.items():
+            path = (*at, key)
+            old = here.get(key)
+            if path == ("material",) and isinstance(value, Mapping) and isinstance(old, str):
+                old = here[key] = {"extends": old}
+                self.origin[(*path, "extends")] = self.file_of(path)
+            if isinstance(value, Mapping) and isinstance(old, Mapping) and _same_kind(old, value):
+                self.put(value, file, beside, path)
+                continue
+            if path == ("material",) and beside is not None:
+                self.beside = beside
+            self._forget(path)
+            here[key] = _copied(value)
+            self.origin[path] = file
+
+    def _forget(self, path: tuple) -> None:
+        for known in [known for known in self.origin if known[: len(path)] == path]:
+            del self.origin[known]
+
+
+def read_draft(path: Path, chain: tuple[Path, ...] = ()) -> Draft:
+    """Read a file and, below it, those that it extends.
+
+    `extends` holds a path relative to the file, or the name of a file beside it.
+
+    Raises
+    ------
+    ConfigError
+        When a file cannot be read, or extends itself.
+    """
+    values = read_yaml(path)
+    parent = values.pop("extends", None)
+    draft = Draft({}, str(path), beside=path.parent)
+    if parent is not None:
+        if not isinstance(parent, str) or not parent:
+            raise ConfigError(f"{path}: extends: expected a text, the file that is extended")
+        chain = (*chain, path.resolve())
+        target = beside_or_below(parent, path.parent)
+        if target.resolve() in chain:
+            raise ConfigError(f"{path}: extends = {parent}: the file extends itself")
+        if not target.exists():
+            raise ConfigError(f"{path}: extends = {parent}: no such file, looked for {target}")
+        draft = read_draft(target, chain)
+        draft.file = str(path)
+    draft.put(values, str(path), path.parent)
+    return draft
+
+
+def beside_or_below(name: str, folder: Path) -> Path:
+    """Path that a config names: relative to `folder`; `.yaml` may be left out."""
+    path = folder / name
+    return path if path.suffix in (".yaml", ".yml") else path.with_name(path.name + ".yaml")
+
+
+def nested(values: Mapping) -> dict:
+    """Turn dotted keys, `loading.confinement_MPa`, into nested mappings."""
+    draft = Draft({}, "")
+    for key, value in values.items():
+        *above, last = str(key).split(".")
+        inner: dict = {last: nested(value) if isinstance(value, Mapping) else value}
+        for name in reversed(above):
+            inner = {name: inner}
+        draft.put(inner, "")
+    return draft.values
+
+
+def _same_kind(old: Mapping, new: Mapping) -> bool:
+    return "kind" not in new or "kind" not in old or old["kind"] == new["kind"]
+
+
+def _copied(value):
+    if isinstance(value, Mapping):
+        return {key: _copied(item) for key, item in value.items()}
+    return value

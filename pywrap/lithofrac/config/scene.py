@@ -1,0 +1,143 @@
+"""What may stand under `scene:`: the geometry of a case, one model per kind.
+
+Lengths are millimetres in the file and metres in the properties, which have no unit in their name.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from lithofrac.config.base import MM, Positive, Section
+
+
+class SingleElement(Section):
+    """One right-angled triangle with its legs on the two symmetry planes.
+
+    Confinement acts on its hypotenuse, which gives a uniform stress: a material point driven
+    through the whole code.
+    """
+
+    kind: Literal["single_element"]
+    size_mm: Positive
+    """Length of both legs."""
+    axisymmetric: bool = True
+    """Triaxial test; `false` is plane strain."""
+
+    @property
+    def height(self) -> float:
+        """Extent along the axis of loading [m]."""
+        return self.size_mm * MM
+
+    @property
+    def element_size(self) -> float:
+        """Nominal edge length of the largest elements [m]."""
+        return self.size_mm * MM
+
+
+class Specimen(Section):
+    """What all uniformly meshed, upright specimens share."""
+
+    height_mm: Positive
+    element_size_mm: Positive
+    """Nominal edge length of the elements."""
+    structured: bool = False
+    """Rows of equal right-angled triangles instead of an unstructured mesh."""
+
+    @property
+    def height(self) -> float:
+        """Height of the whole specimen [m]."""
+        return self.height_mm * MM
+
+    @property
+    def element_size(self) -> float:
+        """Nominal edge length of the elements [m]."""
+        return self.element_size_mm * MM
+
+
+class Triaxial(Specimen):
+    """Cylinder under fluid pressure, axisymmetric (Klerck 2004, Fig. 8c)."""
+
+    kind: Literal["triaxial"]
+    diameter_mm: Positive
+    whole_height: bool = False
+    """Mesh the whole height; `false` meshes the upper half, as the paper does."""
+
+    @property
+    def radius(self) -> float:
+        """Radius of the cylinder [m]."""
+        return 0.5 * self.diameter_mm * MM
+
+
+class PlaneStrain(Specimen):
+    """Prism between two lateral platens, plane strain (Klerck 2004, Fig. 8a)."""
+
+    kind: Literal["plane_strain"]
+    width_mm: Positive
+
+    @property
+    def width(self) -> float:
+        """Width across the confined faces [m]."""
+        return self.width_mm * MM
+
+
+class HoleQuarter(Section):
+    """Quarter of a square block with a central hole, plane strain (Klerck 2004, Fig. 13).
+
+    The hole is in the lower left corner, both symmetry planes run through its centre, and the
+    load acts on the upper face.
+    """
+
+    kind: Literal["hole_quarter"]
+    hole_radius_mm: Positive
+    block_over_radius: float = Field(default=8.0, gt=2.0)
+    """Width and height of the whole block, in hole radii."""
+    wall_elements_per_radius: float = Field(default=12.0, ge=1.0)
+    """Elements on a length of one radius at the wall of the hole."""
+    far_elements_per_radius: float = Field(default=3.0, gt=0.0)
+    """The same at the outer faces."""
+
+    @property
+    def radius(self) -> float:
+        """Radius of the hole [m]."""
+        return self.hole_radius_mm * MM
+
+    @property
+    def height(self) -> float:
+        """Height of the whole block [m]."""
+        return self.block_over_radius * self.radius
+
+    @property
+    def wall_size(self) -> float:
+        """Nominal edge length at the wall of the hole [m]."""
+        return self.radius / self.wall_elements_per_radius
+
+    @property
+    def element_size(self) -> float:
+        """Nominal edge length of the largest elements [m]."""
+        return self.radius / min(self.far_elements_per_radius, self.wall_elements_per_radius)
+
+
+class Bar(Specimen):
+    """Upright bar on a frictionless base, plane strain; for waves and crack bands."""
+
+    kind: Literal["bar"]
+    width_mm: Positive
+    structured: bool = True
+    """Rows of equal right-angled triangles instead of an unstructured mesh."""
+    laterally_fixed: bool = False
+    """Both long faces on rollers: plane waves, uniaxial strain."""
+
+    @property
+    def width(self) -> float:
+        """Width of the bar [m]."""
+        return self.width_mm * MM
+
+
+Scene = Annotated[
+    SingleElement | Triaxial | PlaneStrain | HoleQuarter | Bar, Field(discriminator="kind")
+]
+
+SIZE_KEYS = {
+    "single_element": "size_mm",
+    "hole_quarter": "far_elements_per_radius",
+}  # key that sets the size of the largest elements, where it is not `element_size_mm`

@@ -1,0 +1,104 @@
+"""A suite: names of cases, the file each one extends, and the keys in which it differs."""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, PrivateAttr, StringConstraints, ValidationError
+
+from lithofrac.config.base import Section
+from lithofrac.config.case import Case, check_case
+from lithofrac.config.errors import ConfigError, sentences, suggestion
+from lithofrac.config.extend import beside_or_below, nested, read_draft
+from lithofrac.config.material import PACKAGED
+from lithofrac.config.yaml_file import read_yaml
+
+Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$")]
+SEED = re.compile(r"^(?P<name>.+)@seed(?P<seed>[0-9]+)$")
+
+
+class Entry(Section):
+    """One case of a suite."""
+
+    extends: str
+    """Case file, relative to the suite file."""
+    set: dict[str, Any] = Field(default_factory=dict)
+    """Dotted keys of the case file and the values that replace theirs."""
+
+
+class Suite(Section):
+    """Cases that are run together."""
+
+    title: str
+    cases: dict[Name, Entry] = Field(min_length=1)
+    """Name of a case, which is also the name of its results folder -> what it is."""
+    _file: Path = PrivateAttr(default=Path())
+
+    def case(self, name: str, overrides: Mapping | None = None) -> Case:
+        """The checked case of that name; `NAME@seed2` is another mesh of case NAME.
+
+        Raises
+        ------
+        ConfigError
+            When the suite has no such case, or the case is wrong.
+        """
+        found = SEED.match(name)
+        base = found["name"] if found else name
+        if base not in self.cases:
+            known = suggestion(base, list(self.cases))
+            raise ConfigError(f"{self._file}: cases.{base}: no such case, {known}")
+        entry = self.cases[base]
+        here = f"{self._file}: cases.{base}"
+        path = beside_or_below(entry.extends, self._file.parent)
+        if not path.exists():
+            raise ConfigError(f"{here}.extends = {entry.extends}: no such file, expected {path}")
+        draft = read_draft(path)
+        draft.put(nested(entry.set), f"{here}.set", self._file.parent)
+        seed = {"mesh": {"seed": int(found["seed"])}} if found else {}
+        draft.put({**seed, **nested(overrides or {})}, "command line", Path())
+        return check_case(draft)
+
+
+def load_suite(path: Path | str) -> Suite:
+    """Read a suite file; its cases are checked when they are asked for.
+
+    Raises
+    ------
+    ConfigError
+        With one sentence per mistake, one per line.
+    """
+    path = Path(path)
+    try:
+        suite = Suite.model_validate(read_yaml(path))
+    except ValidationError as error:
+        raise sentences(error, Suite, lambda keys: str(path)) from None
+    suite._file = path
+    return suite
+
+
+def default_suite() -> Path:
+    """`configs/suite.yaml` of the working folder, else the installed one."""
+    here = Path("configs/suite.yaml")
+    return here if here.is_file() else PACKAGED / "suite.yaml"
+
+
+def find_case(name: str, suite: Path | None = None, overrides: Mapping | None = None) -> Case:
+    """The case that a user names.
+
+    Parameters
+    ----------
+    name : path of a case file (ending in `.yaml`), or name of a case of the suite
+    suite : suite file to look in, default `default_suite()`
+    overrides : keys that replace those of the case, nested or dotted
+
+    Raises
+    ------
+    ConfigError
+        When there is no such case, or it is wrong.
+    """
+    if name.endswith((".yaml", ".yml")) or Path(name).exists():
+        draft = read_draft(Path(name))
+        draft.put(nested(overrides or {}), "command line", Path())
+        return check_case(draft)
+    return load_suite(suite or default_suite()).case(name, overrides)

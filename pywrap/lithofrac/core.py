@@ -1,0 +1,219 @@
+"""The compiled run as Python sees it: arrays in, arrays out, errors raised, indices from 0."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+import numpy as np
+
+# Waiting threads must sleep: spinning ones cost a factor eight on a shared machine.
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+
+from lithofrac import _core
+from lithofrac.errors import checked
+from lithofrac.problem import Damping, Problem
+
+_face = _core.run_face
+_new = checked(_face.run_new)
+_drop = checked(_face.run_drop)
+_add_velocity = checked(_face.run_add_velocity)
+_add_pressure = checked(_face.run_add_pressure)
+_set_motion = checked(_face.run_set_motion)
+_advance = checked(_face.run_advance)
+_clock = checked(_face.run_clock)
+_energy = checked(_face.run_energy)
+_loads = checked(_face.run_loads)
+_elements = checked(_face.run_elements)
+_nodes = checked(_face.run_nodes)
+_checkpoint_size = checked(_face.run_checkpoint_size)
+_save = checked(_face.run_save)
+_restore = checked(_face.run_restore)
+
+DAMPING = {"none": 0, "affine": 1, "ground": 2}  # fortran/run/settings.f90
+
+
+@dataclass(frozen=True)
+class Energy:
+    """The energy ledger [J], per metre of depth or per radian; `residual` is relative."""
+
+    kinetic: float
+    elastic: float
+    compressive: float
+    fracture: float
+    external: float
+    damping: float
+    residual: float
+    initial: float
+
+    @property
+    def internal(self) -> float:
+        """Elastic energy and what the material has dissipated [J]."""
+        return self.elastic + self.compressive + self.fracture
+
+
+@dataclass(frozen=True)
+class ElementState:
+    """State of some elements, in the frame that rotates with the material.
+
+    stress (n, 4) xx, yy, zz, xy [Pa]; strain (n, 4) with engineering shear; plastic_strain (n,);
+    tensile_strength (n, 3) and fracturing_strain (n, 3) along axis 1, axis 2 and zz;
+    axis_angle (n,) and crack_angle (n,) [rad].
+    """
+
+    stress: np.ndarray
+    strain: np.ndarray
+    plastic_strain: np.ndarray
+    tensile_strength: np.ndarray
+    fracturing_strain: np.ndarray
+    axis_angle: np.ndarray
+    crack_angle: np.ndarray
+
+
+def band_widths(problem: Problem) -> np.ndarray:
+    """Crack band width of every element [m], (m,): the choice of its material."""
+    areas = problem.mesh.areas()
+    factor = np.array([2.0 if m.band_width == "sqrt_2A" else 1.0 for m in problem.materials])
+    return np.sqrt(factor[problem.mesh.body] * areas)
+
+
+class Run:
+    """One simulation in the core; owns its memory there.
+
+    Raises
+    ------
+    lithofrac.errors.CoreError
+        Where the core refuses the mesh, a material or a load, or a step fails.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self._handle = 0
+        self.problem = problem
+        self.n_loads = len(problem.velocity_loads) + len(problem.pressure_loads)
+        self._handle = _new(*_arguments(problem))
+        for load in problem.velocity_loads:
+            _add_velocity(
+                self._handle,
+                load.nodes + 1,
+                load.component + 1,
+                load.speed,
+                load.ramp.start,
+                load.ramp.duration,
+            )
+        for load in problem.pressure_loads:
+            _add_pressure(
+                self._handle,
+                (load.edges + 1).T,
+                load.pressure,
+                load.stiffness,
+                load.ramp.start,
+                load.ramp.duration,
+            )
+
+    def __del__(self) -> None:
+        if getattr(self, "_handle", 0):
+            _drop(self._handle)
+            self._handle = 0
+
+    def set_motion(self, displacement: np.ndarray, velocity: np.ndarray) -> None:
+        """Start from displacement [m] and velocity [m/s], both (n, 2), at time 0."""
+        _set_motion(self._handle, displacement.T, velocity.T)
+
+    def advance(self, steps: int, threads: int = 1) -> None:
+        """Take `steps` steps; other Python threads run meanwhile."""
+        _advance(self._handle, steps, threads)
+
+    @property
+    def step(self) -> int:
+        """Steps taken; the fields are at time `step * dt`."""
+        return _clock(self._handle)[0]
+
+    @property
+    def dt(self) -> float:
+        """Time step [s]."""
+        return _clock(self._handle)[1]
+
+    @property
+    def critical_step(self) -> tuple[float, int]:
+        """Smallest exact element limit [s] and the element that sets it."""
+        _, _, critical, element = _clock(self._handle)
+        return critical, element - 1
+
+    def energy(self) -> Energy:
+        """The ledger at the time of the fields."""
+        return Energy(*map(float, _energy(self._handle)))
+
+    def loads(self) -> np.ndarray:
+        """Force [N] and displacement [m] of every load, (n, 2): velocities, then pressures.
+
+        A velocity load has the sum of its reactions and the mean displacement of its component;
+        a pressure load has pressure times area and the mean outward displacement.
+        """
+        return _loads(self._handle, self.n_loads).T if self.n_loads else np.zeros((0, 2))
+
+    def elements(self, elements: np.ndarray) -> ElementState:
+        """State of the elements of these indices."""
+        return element_states(_elements(self._handle, np.asarray(elements) + 1).T)
+
+    def nodes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Displacement (n, 2) [m], velocity (n, 2) [m/s] of the half step after, mass (n,) [kg]."""
+        displacement, velocity, mass = _nodes(self._handle, len(self.problem.mesh.nodes))
+        return displacement.T, velocity.T, mass
+
+    def save(self) -> np.ndarray:
+        """The state to the bit, as one array of numbers."""
+        return _save(self._handle, _checkpoint_size(self._handle))
+
+    def restore(self, state: np.ndarray) -> None:
+        """Go on from a state that `save` gave for the same problem."""
+        _restore(self._handle, state)
+
+
+def element_states(values: np.ndarray) -> ElementState:
+    """Name the columns of the core's `element_state`, (n, 17)."""
+    return ElementState(
+        values[:, 0:4],
+        values[:, 4:8],
+        values[:, 8],
+        values[:, 9:12],
+        values[:, 12:15],
+        values[:, 15],
+        values[:, 16],
+    )
+
+
+def _arguments(problem: Problem) -> tuple:
+    """Arguments of the core's `run_new`, materials packed into equal arrays."""
+    mesh, materials = problem.mesh, problem.materials
+    knots = np.array([m.table.shape[1] for m in materials])
+    constants = np.zeros((5, len(materials)), order="F")
+    tables = np.zeros((4, knots.max(), len(materials)), order="F")
+    options = np.zeros((4, len(materials)), dtype=np.int32, order="F")
+    for i, m in enumerate(materials):
+        constants[:, i] = m.young, m.poisson, m.density, m.tensile_strength, m.fracture_energy
+        tables[:, : knots[i], i] = m.table
+        options[:, i] = m.options
+    kind, alpha = damping_arguments(problem.damping)
+    return (
+        mesh.nodes.T,
+        mesh.triangles.T + 1,
+        mesh.body + 1,
+        int(problem.axisymmetric),
+        constants,
+        tables,
+        knots,
+        options,
+        band_widths(problem),
+        problem.time_step_factor,
+        kind,
+        problem.damping.fraction,
+        alpha,
+    )
+
+
+def damping_arguments(damping: Damping) -> tuple[int, float]:
+    """Kind of damping and fixed alpha [1/s] as the core takes them; -1 asks for the quotient."""
+    if damping.alpha is None:
+        kind = damping.relative_to if damping.fraction > 0.0 else "none"
+        return DAMPING[kind], -1.0
+    return DAMPING[damping.relative_to if damping.alpha > 0.0 else "none"], damping.alpha

@@ -1,0 +1,69 @@
+"""What `lithofrac plot KIND INPUT... --out FILE` does: a figure, or its numbers as CSV."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from lithofrac.analysis import results, tables
+from lithofrac.data import DataError
+from lithofrac.plots import energy, gallery, measured, mesh, sandstone, single_element, style
+
+FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
+    "single_element": single_element.figure,
+    "stress_strain": sandstone.stress_strain,
+    "strength": sandstone.strength,
+    "measured": measured.figure,
+    "mesh": mesh.figure,
+    "energy": energy.figure,
+    "gallery": gallery.figure,
+}
+TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
+    "single_element": tables.single_element,
+    "strength": tables.strength,
+    "errors": tables.errors,
+    "tautona": tables.tautona,
+    "zigong": tables.zigong,
+    "zigong_fit": tables.zigong_fit,
+    "run_time": tables.run_time,
+    "results": results.verdicts,
+}
+FORMATS = (".svg", ".png", ".pdf")
+
+
+def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> None:
+    """Draw a figure, or write a table when `out` ends in `.csv`.
+
+    Parameters
+    ----------
+    kind : a key of `FIGURES` or `TABLES`
+    inputs : results folders or files in them, bench curves, or a material; what the kind needs
+    out : file to write, .svg, .png, .pdf or .csv
+    data : the folder `data/`, by default that of the working folder
+
+    Raises
+    ------
+    DataError
+        When the kind or format is unknown, an input is missing, or a data file is wrong.
+    """
+    data = Path("data") if data is None else data
+    missing = [str(path) for path in inputs if not Path(path).exists()]
+    if missing:
+        raise DataError(f"{missing[0]}: no such file or folder, expected an input of the plot")
+    known = TABLES if out.suffix == ".csv" else FIGURES
+    if out.suffix not in (*FORMATS, ".csv"):
+        raise DataError(
+            f"{out}: format {out.suffix!r}, expected one of {', '.join((*FORMATS, '.csv'))}"
+        )
+    if kind not in known:
+        what = "table" if known is TABLES else "figure"
+        raise DataError(f"plot: no {what} {kind!r}, expected one of {', '.join(known)}")
+    made = known[kind](inputs, data)
+    if known is FIGURES:
+        style.save(made, out)
+        return
+    out.parent.mkdir(parents=True, exist_ok=True)
+    part = out.with_name(f".{out.name}.part")
+    made.to_csv(part, index=False)
+    part.replace(out)

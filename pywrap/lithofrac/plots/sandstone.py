@@ -1,0 +1,132 @@
+"""Sandstone in triaxial and plane strain compression (Klerck 2004, Figs 9 and 10)."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from lithofrac.analysis.mohr_coulomb import peak_line
+from lithofrac.analysis.runs import Run, find_runs
+from lithofrac.analysis.tables import NOT_DIGITISED
+from lithofrac.data import Curve, load_curves
+from lithofrac.plots import style
+
+TITLES = {"triaxial": "triaxial, soft pressure", "plane_strain": "plane strain, stiff platens"}
+DEFAULT_STIFFNESS = 0.02  # over Young's modulus: the calibrated value of the plane strain series
+SWEEP = (("v", style.ORANGE), ("s", style.RED), ("D", style.PURPLE), ("P", style.SKY))
+SERIES = ("^", "x", "+", "1", "2")  # markers of digitised series
+
+
+def stress_strain(inputs: list[Path], data: Path) -> Figure:
+    """Fig. 9: axial stress against axial strain, one panel a test, one curve a confinement."""
+    runs = [run for run in find_runs(inputs) if run.stiffness in (0.0, DEFAULT_STIFFNESS)]
+    tests = [test for test in TITLES if any(run.test == test for run in runs)]
+    digitised = load_curves(data, "9")
+    drawn, axes = style.new_figure(1, max(len(tests), 1), height=3.6, sharey=True)
+    colours = style.confinement_colours([run.confinement_MPa for run in runs])
+    for panel, test in zip(axes.flat, tests, strict=False):
+        own = [run for run in runs if run.test == test]
+        for run in own:
+            draw_curve(panel, run, colours[run.confinement_MPa])
+        for marker, curve in zip(SERIES, _of(digitised, own), strict=False):
+            draw_points(panel, curve, marker)
+        panel.set(title=TITLES[test], xlabel="axial strain [%]", xlim=(0, None), ylim=(0, None))
+        if not any(curve.sheet.origin == "experiment" for curve in _of(digitised, own)):
+            style.badge(panel, NOT_DIGITISED, "upper right")
+        panel.set_ylim(0, 1.12 * panel.get_ylim()[1])
+        handles, labels = panel.get_legend_handles_labels()
+        if handles:
+            panel.legend(handles, labels, loc="center right")
+    axes[0, 0].set_ylabel("axial stress [MPa]")
+    handles = [
+        axes[0, 0].plot([], [], color=colour, label=f"{level:g}")[0]
+        for level, colour in colours.items()
+    ]
+    mark = axes[0, 0].plot([], [], "o", ms=4, mfc="white", mec=style.BLACK, label="peak")[0]
+    drawn.legend(
+        handles=[*handles, mark],
+        loc="outside upper center",
+        ncols=len(handles) + 1,
+        title="confinement [MPa]",
+    )
+    return drawn
+
+
+def strength(inputs: list[Path], data: Path) -> Figure:
+    """Fig. 10: strength against confinement, beside the closed form of Table 1."""
+    runs = find_runs(inputs)
+    drawn, axes = style.new_figure(height=4.2)
+    panel = axes[0, 0]
+    draw_line(panel, runs)
+    draw_series(panel, [run for run in runs if run.stiffness == 0.0], "o", style.BLUE,
+                "triaxial, this code")  # fmt: skip
+    stiff = sorted({run.stiffness for run in runs if run.stiffness > 0.0})
+    for (marker, colour), stiffness in zip(SWEEP, stiff, strict=False):
+        own = [run for run in runs if run.stiffness == stiffness]
+        label = f"plane strain, k = {stiffness:g} E, this code"
+        draw_series(panel, own, marker, colour, label)
+    digitised = load_curves(data, "10")
+    for marker, curve in zip(SERIES, digitised, strict=False):
+        panel.errorbar(
+            curve.x,
+            curve.y,
+            xerr=curve.x_error,
+            yerr=curve.y_error,
+            fmt=marker,
+            color=style.BLACK,
+            ls="none",
+            label=f"{curve.sheet.origin}: {curve.sheet.series}",
+        )
+    panel.set(xlabel="confinement [MPa]", ylabel="strength (first peak) [MPa]", ylim=(0, None))
+    panel.legend(loc="upper left")
+    if not any(curve.sheet.origin == "experiment" for curve in digitised):
+        style.badge(panel, NOT_DIGITISED)
+    return drawn
+
+
+def draw_curve(axes: Axes, run: Run, colour) -> None:
+    """Draw one run and its peak; strain in %."""
+    axes.plot(100.0 * run.history["axial_strain"], run.history["axial_stress_MPa"], color=colour)
+    if run.peak:
+        axes.plot(100.0 * run.peak.strain, run.peak.stress, "o", ms=4, mfc="white", mec=colour)
+
+
+def draw_points(axes: Axes, curve: Curve, marker: str) -> None:
+    """Draw a digitised stress-strain curve; strain in %."""
+    axes.errorbar(
+        100.0 * curve.x,
+        curve.y,
+        xerr=100.0 * curve.x_error,
+        yerr=curve.y_error,
+        fmt=marker,
+        ms=4,
+        elinewidth=0.7,
+        color=style.BLACK,
+        label=f"{curve.sheet.origin}: {curve.sheet.series}",
+    )
+
+
+def draw_line(axes: Axes, runs: list[Run]) -> None:
+    """Draw the strength of the hardening table, largest over the plastic strain."""
+    confinement = np.linspace(0.0, max(run.confinement_MPa for run in runs) or 1.0, 61)
+    line = peak_line(runs[0].rock.table, 1e6 * confinement) / 1e6
+    axes.plot(confinement, line, color=style.GREY, label="Table 1, closed form")
+
+
+def draw_series(axes: Axes, runs: list[Run], marker: str, colour: str, label: str) -> None:
+    """Draw first peaks; a run without one is a hollow mark on the axis with "no peak"."""
+    peaks = [(run.confinement_MPa, run.peak.stress) for run in runs if run.peak]
+    if peaks:
+        axes.plot(*zip(*peaks, strict=True), marker, color=colour, label=label)
+    without = [run.confinement_MPa for run in runs if run.peak is None]
+    if without:
+        height = np.full(len(without), 0.02)
+        axes.plot(without, height, marker, mfc="white", mec=colour, clip_on=False,
+                  transform=axes.get_xaxis_transform(), label=f"{label}: no peak")  # fmt: skip
+
+
+def _of(curves: list[Curve], runs: list[Run]) -> list[Curve]:
+    """Digitised curves that belong to these runs."""
+    names = {run.name for run in runs}
+    return [curve for curve in curves if curve.sheet.compare_with in names]

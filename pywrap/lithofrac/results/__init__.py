@@ -1,0 +1,1 @@
+"""Files of a run: tables, fields, checkpoints. Nothing half-written ever looks whole."""

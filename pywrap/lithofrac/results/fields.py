@@ -1,0 +1,59 @@
+"""Fields over the mesh as a VTU series with a .pvd that ParaView opens."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import meshio
+import numpy as np
+
+from lithofrac.core import Run
+from lithofrac.results.files import write_whole
+
+
+def write_frame(path: Path, run: Run) -> None:
+    """Write displacement, velocity and element state of now as one VTU file.
+
+    Stress and strain are in the frame that rotates with the material; SI units in the names.
+    """
+    mesh = run.problem.mesh
+    displacement, velocity, _ = run.nodes()
+    state = run.elements(np.arange(len(mesh.triangles)))
+    cells = {
+        "stress_Pa": state.stress,
+        "strain": state.strain,
+        "plastic_strain": state.plastic_strain,
+        "tensile_strength_Pa": state.tensile_strength,
+        "fracturing_strain": state.fracturing_strain,
+        "crack_angle_rad": state.crack_angle,
+        "body": mesh.body,
+    }
+    grid = meshio.Mesh(
+        _with_zero(mesh.nodes),
+        [("triangle", mesh.triangles)],
+        point_data={
+            "displacement_m": _with_zero(displacement),
+            "velocity_m_s": _with_zero(velocity),
+        },
+        cell_data={name: [np.ascontiguousarray(values)] for name, values in cells.items()},
+    )
+    write_whole(path, lambda part: meshio.write(part, grid, file_format="vtu"))
+
+
+def write_series(path: Path, frames: list[tuple[float, str]]) -> None:
+    """Write the .pvd that lists the frames (time [s], file name relative to the .pvd)."""
+    rows = "".join(
+        f'    <DataSet timestep="{time:.9e}" part="0" file={quoteattr(name)}/>\n'
+        for time, name in frames
+    )
+    text = (
+        '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n'
+        f"  <Collection>\n{rows}  </Collection>\n</VTKFile>\n"
+    )
+    write_whole(path, lambda part: part.write_text(text))
+
+
+def _with_zero(plane: np.ndarray) -> np.ndarray:
+    """Append a zero third component, (n, 3)."""
+    return np.column_stack([plane, np.zeros(len(plane))])

@@ -1,0 +1,123 @@
+"""Tables that grow while a run goes on: history, energy, probes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+from lithofrac.core import Run
+
+ENERGY = ("kinetic", "elastic", "compressive", "fracture", "external", "damping")
+ENERGY_COLUMNS = [
+    "time_s",
+    "kinetic_J",
+    "elastic_J",
+    "compressive_dissipation_J",
+    "fracture_dissipation_J",
+    "external_J",
+    "damping_J",
+    "residual_J",
+    "residual_relative",
+]
+PROBE_COLUMNS = [
+    *(f"stress_{c}_MPa" for c in ("xx", "yy", "zz", "xy")),
+    *(f"strain_{c}" for c in ("xx", "yy", "zz", "xy")),
+    "plastic_strain",
+    *(f"tensile_strength_{i}_MPa" for i in (1, 2, 3)),
+]
+
+
+class Recorder:
+    """Rows of a run, taken at its records; goes into the checkpoint and comes back from it."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        problem = run.problem
+        self.names = [load.name for load in (*problem.velocity_loads, *problem.pressure_loads)]
+        self.history: list[np.ndarray] = []  # step, time, then force and displacement per load
+        self.energy: list[np.ndarray] = []
+        self.probes: list[np.ndarray] = []
+
+    def record(self) -> None:
+        """Take one row of everything."""
+        run = self.run
+        ledger, time = run.energy(), run.step * run.dt
+        self.history.append(np.concatenate([[run.step, time], run.loads().ravel()]))
+        scale = max(abs(ledger.external), abs(ledger.initial), ledger.internal)
+        entries = [getattr(ledger, name) for name in ENERGY]
+        self.energy.append(
+            np.array([time, *entries, ledger.residual * scale, ledger.residual])
+        )
+        if run.problem.probes:
+            state = run.elements(np.fromiter(run.problem.probes.values(), int))
+            rows = np.column_stack(
+                [
+                    state.stress / 1e6,
+                    state.strain,
+                    state.plastic_strain,
+                    state.tensile_strength / 1e6,
+                ]
+            )
+            self.probes.append(np.column_stack([np.full(len(rows), time), rows]))
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """What a checkpoint keeps."""
+        kept = {"history": np.array(self.history), "energy": np.array(self.energy)}
+        return kept | ({"probes": np.array(self.probes)} if self.probes else {})
+
+    def restore(self, arrays: dict[str, np.ndarray]) -> None:
+        """Take back what `arrays` gave."""
+        self.history = list(arrays["history"])
+        self.energy = list(arrays["energy"])
+        self.probes = list(arrays.get("probes", []))
+
+    def history_table(self) -> pd.DataFrame:
+        """Boundary records with the axial and lateral measures of the specimen.
+
+        Axial stress and strain are positive in compression, lateral strain in extension,
+        volumetric strain in dilation.
+        """
+        rows = np.array(self.history)
+        table = pd.DataFrame({"step": rows[:, 0].astype(int), "time_s": rows[:, 1]})
+        for i, name in enumerate(self.names):
+            table[f"{name}_force_N"] = rows[:, 2 + 2 * i]
+            table[f"{name}_displacement_mm"] = 1e3 * rows[:, 3 + 2 * i]
+        return self._measures(table)
+
+    def _measures(self, table: pd.DataFrame) -> pd.DataFrame:
+        problem = self.run.problem
+        measures = problem.measures
+        if measures is None:
+            return table
+        load = next(x for x in problem.velocity_loads if x.name == measures.axial_load)
+        nodes = problem.mesh.nodes
+        middle = 0.5 * (nodes.min(axis=0) + nodes.max(axis=0))[load.component]
+        outward = 1.0 if nodes[load.nodes, load.component].mean() > middle else -1.0
+        force = -outward * table[f"{load.name}_force_N"]
+        axial = -outward * 1e-3 * table[f"{load.name}_displacement_mm"] / measures.length
+        table["axial_force_N"] = force
+        table["axial_stress_MPa"] = force / measures.area / 1e6
+        table["axial_strain"] = axial
+        if measures.lateral_load is not None:
+            moved = 1e-3 * table[f"{measures.lateral_load}_displacement_mm"]
+            lateral = moved / measures.lateral_length
+            table["lateral_strain"] = lateral
+            table["volumetric_strain"] = lateral * (2 if problem.axisymmetric else 1) - axial
+        return table
+
+    def energy_table(self) -> pd.DataFrame:
+        """The ledger [J] per metre of depth or per radian, and its relative residual."""
+        return pd.DataFrame(np.array(self.energy), columns=ENERGY_COLUMNS)
+
+    def probe_table(self) -> pd.DataFrame:
+        """One row a probe and record."""
+        probes = self.run.problem.probes
+        n_records = len(self.probes)
+        table = pd.DataFrame(
+            {
+                "probe": np.tile(list(probes), n_records),
+                "element": np.tile(np.fromiter(probes.values(), int), n_records),
+            }
+        )
+        values = np.concatenate(self.probes)
+        return table.assign(**dict(zip(["time_s", *PROBE_COLUMNS], values.T, strict=True)))

@@ -1,0 +1,258 @@
+"""Run a problem to its end: records, frames, checkpoints, summary."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+import lithofrac
+from lithofrac.core import Run
+from lithofrac.errors import CoreError
+from lithofrac.problem import Problem
+from lithofrac.results import checkpoint
+from lithofrac.results.fields import write_frame, write_series
+from lithofrac.results.files import write_json, write_table
+from lithofrac.results.recorder import Recorder
+
+CHECKPOINT_SECONDS = 20.0
+ELEMENT_STEPS_PER_SECOND = 25e6  # of one core, for the prediction of `plan`
+
+
+def plan(problem: Problem) -> dict:
+    """What a run will use and what it leaves out.
+
+    Returns
+    -------
+    dict
+        elements, nodes, bodies, time_step_s, steps, expected_seconds (one core), and
+        `uses`: feature -> bool.
+    """
+    run = Run(problem)
+    elements = len(problem.mesh.triangles)
+    steps = math.ceil(problem.end_time / run.dt)
+    return {
+        "elements": elements,
+        "nodes": len(problem.mesh.nodes),
+        "bodies": len(problem.mesh.body_names),
+        "time_step_s": run.dt,
+        "steps": steps,
+        "expected_seconds": elements * steps / ELEMENT_STEPS_PER_SECOND,
+        "uses": {
+            "axisymmetry": problem.axisymmetric,
+            "yield check": any(m.options[3] for m in problem.materials),
+            "Mohr-Coulomb planes": any(m.options[3] and m.options[2] for m in problem.materials),
+            "damping": problem.damping.fraction > 0.0 or bool(problem.damping.alpha),
+            "pressure": bool(problem.pressure_loads),
+            "probes": bool(problem.probes),
+            "field output": problem.fields > 0,
+        },
+    }
+
+
+def simulate(
+    problem: Problem,
+    out: Path,
+    threads: int = 1,
+    resume: bool = False,
+    progress: Callable[[dict], None] | None = None,
+    meta: dict | None = None,
+) -> dict:
+    """Step `problem` to its end and write the results folder `out`.
+
+    Parameters
+    ----------
+    problem : what to run
+    out : results folder; made if it is not there
+    threads : threads of the core; results are the same bits for any number
+    resume : go on from the newest good checkpoint in `out`
+    progress : called at every record with step, steps, time_s, percent, rate, residual, seconds_left
+    meta : entries for the summary (case, commit)
+
+    Returns
+    -------
+    dict
+        The summary, as in summary.json.
+
+    Raises
+    ------
+    CoreError
+        A step failed, or there is no good checkpoint; summary.json says `failed`, and
+        fields/failed.vtu holds the state to look at.
+    KeyboardInterrupt
+        Passed on after a checkpoint is written; summary.json says `interrupted`.
+    OSError
+        The folder cannot be written.
+    """
+    (out / "fields").mkdir(parents=True, exist_ok=True)
+    session = _Session(problem, out, threads, meta or {})
+    if resume:
+        session.resume()
+    try:
+        session.run_to_end(progress)
+    except KeyboardInterrupt:
+        session.save_checkpoint()
+        session.write("interrupted")
+        raise
+    except CoreError as error:
+        write_frame(out / "fields" / "failed.vtu", session.run)
+        session.write("failed", str(error))
+        raise
+    return session.write("completed")
+
+
+class _Session:
+    """One call of `simulate`: the run, its records and its clocks."""
+
+    def __init__(self, problem: Problem, out: Path, threads: int, meta: dict) -> None:
+        self.problem, self.out, self.threads, self.meta = problem, out, threads, meta
+        self.run = Run(problem)
+        self.recorder = Recorder(self.run)
+        self.frames: list[tuple[float, str]] = []
+        self.mark = checkpoint.fingerprint(problem)
+        self.steps = math.ceil(problem.end_time / self.run.dt)
+        self.every = max(1, self.steps // problem.records)
+        self.core_before = self.wall_before = 0.0
+        self.core_start, self.wall_start = time.process_time(), time.perf_counter()
+        self.first_step = 0
+        self.notes: list[str] = []
+
+    @property
+    def core_seconds(self) -> float:
+        return self.core_before + time.process_time() - self.core_start
+
+    @property
+    def wall_seconds(self) -> float:
+        return self.wall_before + time.perf_counter() - self.wall_start
+
+    def resume(self) -> None:
+        arrays, self.notes = checkpoint.read(self.out, self.mark)
+        self.run.restore(arrays["state"])
+        self.recorder.restore(arrays)
+        self.core_before, self.wall_before = arrays["clocks"]
+        self.frames = [
+            (float(moment), f"fields/frame_{i:04d}.vtu") for i, moment in enumerate(arrays["frames"])
+        ]
+        self.first_step = self.run.step
+
+    def save_checkpoint(self) -> None:
+        checkpoint.write(
+            self.out,
+            self.mark,
+            {
+                "state": self.run.save(),
+                "clocks": np.array([self.core_seconds, self.wall_seconds]),
+                "frames": np.array([moment for moment, _ in self.frames]),
+                **self.recorder.arrays(),
+            },
+        )
+
+    def run_to_end(self, progress: Callable[[dict], None] | None) -> None:
+        run = self.run
+        if not self.recorder.history:
+            run.advance(0, self.threads)
+            self._record()
+            self.save_checkpoint()
+        saved = time.perf_counter()
+        while run.step < self.steps:
+            run.advance(min(self.every, self.steps - run.step), self.threads)
+            self._record()
+            if progress is not None:
+                progress(self._progress())
+            if time.perf_counter() - saved > CHECKPOINT_SECONDS:
+                self.save_checkpoint()
+                saved = time.perf_counter()
+        self.save_checkpoint()
+
+    def _record(self) -> None:
+        self.recorder.record()
+        due = self.run.step / self.steps * max(1, self.problem.fields - 1)
+        if self.problem.fields and due >= len(self.frames):
+            name = f"fields/frame_{len(self.frames):04d}.vtu"
+            write_frame(self.out / name, self.run)
+            self.frames.append((self.run.step * self.run.dt, name))
+
+    def _progress(self) -> dict:
+        done = self.run.step - self.first_step
+        seconds = time.perf_counter() - self.wall_start
+        return {
+            "step": self.run.step,
+            "steps": self.steps,
+            "time_s": self.run.step * self.run.dt,
+            "percent": 100.0 * self.run.step / self.steps,
+            "rate": done * len(self.problem.mesh.triangles) / max(seconds, 1e-9),
+            "cracks": 0,
+            "residual": self.recorder.energy[-1][-1],
+            "seconds_left": seconds / max(done, 1) * (self.steps - self.run.step),
+        }
+
+    def write(self, status: str, message: str = "") -> dict:
+        """Write the tables and the summary; returns the summary."""
+        history = self.recorder.history_table()
+        energy = self.recorder.energy_table()
+        write_table(self.out / "history.parquet", history)
+        write_table(self.out / "energy.parquet", energy)
+        if self.recorder.probes:
+            write_table(self.out / "probes.parquet", self.recorder.probe_table())
+        if self.frames:
+            write_series(self.out / "fields.pvd", self.frames)
+        summary = self._summary(status, message, history, energy)
+        write_json(self.out / "summary.json", summary)
+        return summary
+
+    def _summary(self, status: str, message: str, history, energy) -> dict:
+        run, elements = self.run, len(self.problem.mesh.triangles)
+        core = self.core_seconds
+        return {
+            "status": status,
+            "message": message,
+            **self.meta,
+            "version": lithofrac.__version__,
+            "elements": elements,
+            "nodes": len(self.problem.mesh.nodes),
+            "steps": run.step,
+            "time_step_min_s": run.dt,
+            "time_step_max_s": run.dt,
+            "threads": self.threads,
+            "core_seconds": core,
+            "wall_seconds": self.wall_seconds,
+            "element_steps_per_core_second": elements * run.step / core,
+            "energy": {name: _finite(value) for name, value in energy.iloc[-1].items()},
+            "energy_residual": _finite(energy["residual_relative"].abs().max()),
+            **_peak(history, energy),
+            "max_plastic_strain": _finite(
+                run.elements(np.arange(elements)).plastic_strain.max()
+            ),
+            # without contact and crack insertion these are zero by construction
+            "cracks": 0,
+            "fragments": 0,
+            "max_penetration_over_h": 0.0,
+            "contact_pairs_max": 0,
+            "contact_sweeps_mean": 0.0,
+            "contact_unconverged_steps": 0,
+            "notes": self.notes,
+        }
+
+
+def _peak(history, energy) -> dict:
+    """Largest axial stress, where it was, and kinetic over internal energy there."""
+    if "axial_stress_MPa" not in history:
+        return {"peak_stress_MPa": None, "peak_strain": None, "kinetic_ratio_at_peak": None}
+    row = int(np.nanargmax(history["axial_stress_MPa"].to_numpy()))
+    entry = energy.iloc[row]
+    internal = (
+        entry["elastic_J"] + entry["compressive_dissipation_J"] + entry["fracture_dissipation_J"]
+    )
+    return {
+        "peak_stress_MPa": _finite(history["axial_stress_MPa"].iloc[row]),
+        "peak_strain": _finite(history["axial_strain"].iloc[row]),
+        "kinetic_ratio_at_peak": _finite(entry["kinetic_J"] / internal) if internal > 0 else None,
+    }
+
+
+def _finite(value: float) -> float | None:
+    """A JSON number, or null where there is none."""
+    return float(value) if math.isfinite(value) else None

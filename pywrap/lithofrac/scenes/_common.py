@@ -1,0 +1,52 @@
+"""What every scene fills into its problem in the same way."""
+
+from lithofrac.config.case import Case
+from lithofrac.config.loading import TractionLoading
+from lithofrac.problem import Damping, Mesh, PressureLoad, Ramp, VelocityLoad
+from lithofrac.scenes._probes import probes
+from lithofrac.scenes._timing import velocity_timing
+
+
+def settings(case: Case, mesh: Mesh, points: dict[str, tuple[float, float]]) -> dict:
+    """Keyword arguments of `Problem` that do not depend on the scene."""
+    return {
+        "mesh": mesh,
+        "materials": (case.material,) * len(mesh.body_names),
+        "damping": Damping(case.damping.fraction, case.damping.alpha_1_s, case.damping.relative_to),
+        "time_step_factor": case.time_step_factor,
+        "probes": probes(case, mesh, points),
+        "records": case.output.records,
+        "fields": case.output.fields,
+    }
+
+
+def roller(mesh: Mesh, name: str, component: int) -> VelocityLoad:
+    """Hold one component of the nodes of an edge set."""
+    return VelocityLoad(name, mesh.nodes_of(name), component)
+
+
+def transit(case: Case) -> float:
+    """Time in which a pressure wave runs through the height of the whole specimen [s]."""
+    return case.scene.height / case.material.wave_speed
+
+
+def top_load(
+    case: Case, mesh: Mesh, length: float
+) -> tuple[tuple[VelocityLoad, ...], tuple[PressureLoad, ...], float]:
+    """Load of an unconfined scene on its edge set "top", and the end time [s].
+
+    Parameters
+    ----------
+    length : distance from the loaded end to the plane that stays [m]
+    """
+    loading = case.loading
+    if isinstance(loading, TractionLoading):
+        ramp = Ramp(0.0, loading.ramp_transits * transit(case))
+        load = PressureLoad("top", mesh.edge_sets["top"], loading.stress, ramp=ramp)
+        return (), (load,), ramp.duration + loading.hold_transits * transit(case)
+    timing = velocity_timing(
+        loading.speed / length, loading.ramp_transits * transit(case), loading.end_strain
+    )
+    speed = -loading.speed if loading.sense == "shorten" else loading.speed
+    load = VelocityLoad("top", mesh.nodes_of("top"), 1, speed, timing.ends)
+    return (load,), (), timing.end_time

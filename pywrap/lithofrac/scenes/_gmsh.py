@@ -1,0 +1,104 @@
+"""Run gmsh as its own process on a generated .geo, and read the triangles and lines it made.
+
+The only place that starts gmsh. One thread, no user settings: the same text gives the same mesh.
+"""
+
+import contextlib
+import io
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import meshio
+import numpy as np
+
+TIME_LIMIT = 600.0  # seconds; meshes of the suite take less than one
+
+HEAD = """\
+General.NumThreads = 1;
+Mesh.Algorithm = 6;
+Mesh.Smoothing = 10;
+Mesh.MeshSizeFromPoints = 0;
+Mesh.MeshSizeExtendFromBoundary = 0;
+Mesh.MshFileVersion = 2.2;
+Mesh.Binary = 0;
+"""
+
+
+class MeshError(RuntimeError):
+    """gmsh is missing or gave no mesh; the message holds its last words."""
+
+
+@dataclass(frozen=True)
+class RawMesh:
+    """What gmsh wrote: nodes (n, 2) [m], triangles (m, 3), body (m,), named lines (k, 2)."""
+
+    nodes: np.ndarray
+    triangles: np.ndarray
+    body: np.ndarray
+    body_names: tuple[str, ...]
+    lines: dict[str, np.ndarray]
+
+
+def mesh_from(geo: str) -> RawMesh:
+    """Mesh a geometry whose physical curves and surfaces are the sets and bodies.
+
+    Raises
+    ------
+    MeshError
+        When gmsh cannot be started, fails, or leaves no triangles.
+    """
+    with tempfile.TemporaryDirectory(prefix="lithofrac-") as name:
+        folder = Path(name)
+        (folder / "scene.geo").write_text(HEAD + geo)
+        command = [*_gmsh(), "scene.geo", "-2", "-o", "scene.msh", "-noenv", "-v", "2"]
+        own_home = {**os.environ, "HOME": name, "OMP_NUM_THREADS": "1"}
+        try:
+            done = subprocess.run(
+                command, cwd=folder, env=own_home, capture_output=True, text=True,
+                timeout=TIME_LIMIT,
+            )  # fmt: skip
+        except (OSError, subprocess.TimeoutExpired) as error:
+            raise MeshError(f"gmsh could not be run: {error}") from None
+        if done.returncode != 0 or not (folder / "scene.msh").exists():
+            said = (done.stderr.strip() or done.stdout.strip() or "no message").splitlines()
+            raise MeshError(f"gmsh gave no mesh: {said[-1]}")
+        with contextlib.redirect_stdout(io.StringIO()):  # meshio prints empty lines
+            return _raw(meshio.read(folder / "scene.msh"))
+
+
+def _gmsh() -> list[str]:
+    """Command that starts gmsh: the one beside this Python, else the one on the path."""
+    beside = Path(sys.executable).parent / "gmsh"
+    if beside.exists():
+        return [sys.executable, str(beside)]
+    found = shutil.which("gmsh")
+    if found is None:
+        raise MeshError("gmsh is not installed: no program `gmsh` beside Python or on the path")
+    return [found]
+
+
+def _raw(read: meshio.Mesh) -> RawMesh:
+    names = {(tag, dim): name for name, (tag, dim) in read.field_data.items()}
+    triangles, bodies, lines = [], [], {}
+    for block, tags in zip(read.cells, read.cell_data["gmsh:physical"], strict=True):
+        if block.type == "triangle":
+            triangles.append(block.data)
+            bodies.append(tags)
+        elif block.type == "line":
+            for tag in np.unique(tags):
+                lines.setdefault(names[tag, 1], []).append(block.data[tags == tag])
+    if not triangles:
+        raise MeshError("gmsh gave no triangles")
+    tags, body = np.unique(np.concatenate(bodies), return_inverse=True)
+    return RawMesh(
+        nodes=read.points[:, :2],
+        triangles=np.concatenate(triangles),
+        body=body,
+        body_names=tuple(names[tag, 2] for tag in tags),
+        lines={name: np.concatenate(parts) for name, parts in lines.items()},
+    )
