@@ -57,7 +57,7 @@ def new_figure(rows: int = 1, columns: int = 1, height: float = 3.2, **kwargs) -
 def confinement_colours(confinements: list[float]) -> dict[float, tuple]:
     """Dark to light with rising confinement; the light end stays visible on white."""
     levels = sorted(set(confinements))
-    shades = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, max(len(levels), 1)))
+    shades = plt.get_cmap("viridis")(np.linspace(0.0, 0.82, max(len(levels), 1)))
     return {level: tuple(shade) for level, shade in zip(levels, shades, strict=False)}
 
 
