@@ -245,13 +245,13 @@ contains
       real(wp) :: stress(4)
 
       real(wp) :: du(4), strain(4), rotation(3)
+      integer :: corner(3)
 
-      associate (corner => chunks%node(lane, :, chunk))
-         call gather_previous(corner, fields%u, fields%v, dt, du)
-         strain(3) = 0.0_wp
-         if (chunks%axisymmetric) strain(3) = chunks%hoop(lane, chunk) &
-            *sum(fields%u(1, corner) - dt*fields%v(1, corner))
-      end associate
+      corner = chunks%node(lane, :, chunk)
+      call gather_previous(corner, fields%u, fields%v, dt, du)
+      strain(3) = 0.0_wp
+      if (chunks%axisymmetric) strain(3) = chunks%hoop(lane, chunk) &
+         *sum(fields%u(1, corner) - dt*fields%v(1, corner))
       call strains(1, chunks%gradient(lane, :, chunk), du, strain, rotation)
       call elastic_stress(1, rock%lame, rock%shear, strain, state%strain(lane, :, chunk), stress)
    end function previous_stress
