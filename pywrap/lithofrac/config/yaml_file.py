@@ -6,6 +6,7 @@ The loader builds no objects (safe), refuses a key that stands twice in one mapp
 
 import re
 from pathlib import Path
+from typing import Any
 
 import yaml
 
@@ -47,7 +48,6 @@ def read_yaml(path: Path) -> dict:
     """
     try:
         text = Path(path).read_bytes().decode("utf-8")
-        values = yaml.load(text, Loader=_Loader)
     except FileNotFoundError:
         raise ConfigError(f"{path}: no such file") from None
     except IsADirectoryError:
@@ -58,13 +58,7 @@ def read_yaml(path: Path) -> dict:
         ) from None
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read ({error.strerror})") from None
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark
-        where = f" line {mark.line + 1}, column {mark.column + 1}:" if mark else ""
-        raise ConfigError(f"{path}:{where} {error.problem}") from None
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        reason = " ".join(str(error).split())
-        raise ConfigError(f"{path}: not valid YAML ({reason})") from None
+    values = parsed(text, str(path))
     if values is None:
         raise ConfigError(f"{path}: file is empty, expected a YAML mapping")
     if not isinstance(values, dict):
@@ -72,3 +66,22 @@ def read_yaml(path: Path) -> dict:
             f"{path}: holds a {type(values).__name__}, expected a YAML mapping of keys"
         )
     return values
+
+
+def parsed(text: str, file: str) -> Any:
+    """Value of a YAML text; `file` is named in messages.
+
+    Raises
+    ------
+    ConfigError
+        When the text is not YAML, or holds a key twice.
+    """
+    try:
+        return yaml.load(text, Loader=_Loader)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark
+        where = f" line {mark.line + 1}, column {mark.column + 1}:" if mark else ""
+        raise ConfigError(f"{file}:{where} {error.problem}") from None
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        reason = " ".join(str(error).split())
+        raise ConfigError(f"{file}: not valid YAML ({reason})") from None

@@ -2,7 +2,7 @@
 
 from lithofrac.config.case import Case
 from lithofrac.config.loading import TractionLoading
-from lithofrac.problem import Damping, Mesh, PressureLoad, Ramp, VelocityLoad
+from lithofrac.problem import Damping, Measures, Mesh, PressureLoad, Ramp, VelocityLoad
 from lithofrac.scenes._probes import probes
 from lithofrac.scenes._timing import velocity_timing
 
@@ -28,6 +28,16 @@ def roller(mesh: Mesh, name: str, component: int) -> VelocityLoad:
 def transit(case: Case) -> float:
     """Time in which a pressure wave runs through the height of the whole specimen [s]."""
     return case.scene.height / case.material.wave_speed
+
+
+def top_measures(case: Case, area: float, length: float) -> Measures | None:
+    """Axial stress and strain from the edge set "top" when it is moved.
+
+    None under traction: the stress is given then, and the probes measure.
+    """
+    if isinstance(case.loading, TractionLoading):
+        return None
+    return Measures(axial_load="top", area=area, length=length)
 
 
 def top_load(

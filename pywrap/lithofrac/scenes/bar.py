@@ -1,8 +1,8 @@
 """Upright bar on a frictionless base: waves, and crack bands under tension."""
 
 from lithofrac.config.case import Case
-from lithofrac.problem import Measures, Mesh, Problem
-from lithofrac.scenes._common import roller, settings, top_load
+from lithofrac.problem import Mesh, Problem
+from lithofrac.scenes._common import roller, settings, top_load, top_measures
 from lithofrac.scenes._rectangle import rectangle
 
 
@@ -24,6 +24,6 @@ def problem(case: Case, mesh: Mesh) -> Problem:
         velocity_loads=(*rollers, *velocities),
         pressure_loads=pressures,
         end_time=end_time,
-        measures=Measures(axial_load="top", area=scene.width, length=scene.height),
+        measures=top_measures(case, scene.width, scene.height),
         **settings(case, mesh, {"centre": (scene.width / 2, scene.height / 2)}),
     )

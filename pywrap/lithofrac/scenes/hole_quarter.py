@@ -1,8 +1,8 @@
 """Quarter of a square block with a central hole, loaded from above (Klerck 2004, Fig. 13)."""
 
 from lithofrac.config.case import Case
-from lithofrac.problem import Measures, Mesh, Problem
-from lithofrac.scenes._common import roller, settings, top_load
+from lithofrac.problem import Mesh, Problem
+from lithofrac.scenes._common import roller, settings, top_load, top_measures
 from lithofrac.scenes._finish import finished
 from lithofrac.scenes._gmsh import mesh_from
 from lithofrac.scenes._size import jittered
@@ -52,6 +52,6 @@ def problem(case: Case, mesh: Mesh) -> Problem:
         velocity_loads=(roller(mesh, "bottom", 1), roller(mesh, "left", 0), *velocities),
         pressure_loads=pressures,
         end_time=end_time,
-        measures=Measures(axial_load="top", area=half, length=half),
+        measures=top_measures(case, half, half),
         **settings(case, mesh, {"crown": (0.0, scene.radius), "sidewall": (scene.radius, 0.0)}),
     )

@@ -1,0 +1,130 @@
+"""Words of the command line: commands, options, help with an example each."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import lithofrac
+
+
+def parser() -> argparse.ArgumentParser:
+    """The whole command line; `command` of what it parses is the name of the command."""
+    found = argparse.ArgumentParser(
+        prog="lithofrac",
+        description="Rock fracture benchmarks: continuum with a crack band, explicit in time.",
+        epilog="example: lithofrac run sandstone_triaxial_p10 --out out/p10\n"
+        "exit codes: 0 good, 2 bad input, 3 numerical failure, 130 interrupted",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    found.add_argument("--version", action="version", version=f"lithofrac {lithofrac.__version__}")
+    commands = found.add_subparsers(
+        title="commands", metavar="COMMAND", dest="command", required=True
+    )
+    for add in (_check, _mesh, _run, _plot, _report, _point):
+        add(commands)
+    return found
+
+
+def _command(commands, name: str, summary: str, example: str) -> argparse.ArgumentParser:
+    return commands.add_parser(
+        name,
+        help=summary,
+        description=f"{summary[0].upper()}{summary[1:]}.",
+        epilog=f"example: lithofrac {name} {example}",
+    )
+
+
+CASE = "case file (.yaml) or name in the suite; NAME@seed2 is another mesh"
+
+
+def _check(commands) -> None:
+    one = _command(
+        commands, "check", "check a case and say what its run would use", "sandstone_triaxial_p10"
+    )
+    one.add_argument("case", nargs="*", metavar="CASE", help=f"{CASE}; none: the whole suite")
+    _source_of_case(one)
+
+
+def _mesh(commands) -> None:
+    one = _command(commands, "mesh", "mesh a case", "kirsch --out out/kirsch.npz")
+    one.add_argument("case", metavar="CASE", help=CASE)
+    one.add_argument("--out", type=Path, required=True, metavar="FILE", help="mesh to write, .npz")
+    one.add_argument("--seed", type=_at_least_one, metavar="N", help="realisation of the mesh")
+    _source_of_case(one)
+
+
+def _run(commands) -> None:
+    one = _command(
+        commands,
+        "run",
+        "run a case into a results folder",
+        "sandstone_triaxial_p10 --set loading.end_strain=0.01 --out out/p10",
+    )
+    one.add_argument("case", metavar="CASE", help=CASE)
+    one.add_argument("--out", type=Path, required=True, metavar="DIR", help="results folder")
+    one.add_argument("--mesh", type=Path, metavar="FILE", help="mesh to use, of `lithofrac mesh`")
+    one.add_argument(
+        "--threads", type=_at_least_one, default=1, metavar="N", help="results are the same bits"
+    )
+    one.add_argument("--resume", action="store_true", help="go on from the checkpoint in DIR")
+    one.add_argument("--quiet", action="store_true", help="print errors only")
+    _source_of_case(one)
+
+
+def _plot(commands) -> None:
+    one = _command(
+        commands,
+        "plot",
+        "draw a figure of results",
+        "strength out/sandstone_triaxial_p* --out out/strength.svg",
+    )
+    one.add_argument("kind", metavar="KIND", help="what to draw; an unknown word lists all")
+    one.add_argument("input", nargs="*", type=Path, metavar="INPUT", help="results folder or file")
+    one.add_argument("--out", type=Path, required=True, metavar="FILE", help=".svg .png .pdf .csv")
+    one.add_argument("--data", type=Path, metavar="DIR", help="measured data, default data/")
+
+
+def _report(commands) -> None:
+    one = _command(commands, "report", "write the report of a suite", "out --out reports/suite.md")
+    one.add_argument("folder", type=Path, metavar="DIR", help="folder of the results folders")
+    one.add_argument("--out", type=Path, required=True, metavar="FILE", help="Markdown to write")
+
+
+def _point(commands) -> None:
+    one = _command(
+        commands,
+        "point",
+        "drive one material point",
+        "sandstone --test triaxial --confinement-MPa 10 --out out/p10.parquet",
+    )
+    one.add_argument("rock", metavar="ROCK", help="name or file of a material")
+    one.add_argument(
+        "--test",
+        default="triaxial",
+        metavar="TEST",
+        help="triaxial, plane_strain, extension, tension or stiff_confinement",
+    )
+    one.add_argument(
+        "--confinement-MPa",
+        type=float,
+        default=0.0,
+        metavar="P",
+        dest="confinement_MPa",
+        help="lateral pressure, default 0",
+    )
+    one.add_argument("--end-strain", type=float, metavar="E", help="axial strain at the end")
+    one.add_argument("--out", type=Path, required=True, metavar="FILE", help="curve, .parquet")
+
+
+def _source_of_case(one: argparse.ArgumentParser) -> None:
+    one.add_argument("--suite", type=Path, metavar="FILE", help="default configs/suite.yaml")
+    one.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="override a dotted key"
+    )
+
+
+def _at_least_one(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text}: expected a whole number, 1 or more")
+    return int(text)

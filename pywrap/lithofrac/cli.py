@@ -1,0 +1,260 @@
+"""The command line: `lithofrac check | mesh | run | plot | report | point`.
+
+Exit codes: 0 good, 2 bad input, 3 numerical failure, 130 interrupted. Heavy modules are imported
+by the command that needs them.
+"""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lithofrac.arguments import parser
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from lithofrac.config import Case
+    from lithofrac.problem import Mesh
+
+GOOD, BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 0, 2, 3, 130
+OWN_FILES = ("summary.json", "*.parquet", "checkpoint*.npz", "fields.pvd", "fields/*.vtu")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run one command; returns its exit code."""
+    options = parser().parse_args(arguments)
+    try:
+        return COMMANDS[options.command](options)
+    except KeyboardInterrupt:
+        print("lithofrac: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:  # `lithofrac check | head`
+        sys.stderr.close()
+        return GOOD
+    except Exception as error:
+        code = _exit_code(error)
+        if code is None:
+            raise
+        for line in str(error).splitlines():
+            print(f"lithofrac: {line}", file=sys.stderr)
+        return code
+
+
+def _exit_code(error: Exception) -> int | None:
+    """Exit code of a failure that a user can act on; None for a defect of the program."""
+    from lithofrac.config import ConfigError
+
+    names = {base.__name__ for base in type(error).__mro__}
+    if isinstance(error, (ConfigError, OSError)) or "DataError" in names:
+        return BAD_INPUT
+    return NUMERICAL_FAILURE if names & {"CoreError", "MeshError"} else None
+
+
+def check(options: Namespace) -> int:
+    """Say what a run would use, and whether its input is right."""
+    from lithofrac.config import load_suite
+    from lithofrac.config.suite import default_suite
+
+    names = options.case or list(load_suite(options.suite or default_suite()).cases)
+    if len(names) == 1:
+        _print_plan(names[0], _case(names[0], options))
+        return GOOD
+    for name in names:
+        print(f"{name}: {_case(name, options).title}")
+    print(f"{len(names)} cases are right")
+    return GOOD
+
+
+def mesh(options: Namespace) -> int:
+    """Mesh a case and save it."""
+    from lithofrac.scenes import make_mesh
+
+    made = make_mesh(_case(options.case, options), options.seed)
+    options.out.parent.mkdir(parents=True, exist_ok=True)
+    with open(options.out, "wb") as file:  # a handle, so that no suffix is added
+        made.save(file)
+    print(f"{options.out}: {len(made.triangles)} elements, {len(made.nodes)} nodes")
+    return GOOD
+
+
+def run(options: Namespace) -> int:
+    """Run a case into its results folder."""
+    from lithofrac.progress import Progress
+    from lithofrac.run import simulate
+    from lithofrac.scenes import make_problem
+
+    case = _case(options.case, options)
+    made = _mesh_of(case, options)
+    problem = make_problem(case, made)
+    name = Path(options.case).stem if options.case.endswith((".yaml", ".yml")) else options.case
+    _prepare(options.out, case, made, options.resume)
+    progress = Progress(name)
+    signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
+    try:
+        summary = simulate(
+            problem,
+            options.out,
+            threads=options.threads,
+            resume=options.resume,
+            progress=None if options.quiet else progress,
+            meta={"case": name, "title": case.title, "commit": _commit()},
+        )
+    except KeyboardInterrupt:
+        print(
+            f"lithofrac: interrupted; the same command with --resume goes on from {options.out}",
+            file=sys.stderr,
+        )
+        return INTERRUPTED
+    finally:
+        progress.close()
+    if not options.quiet:
+        _print_summary(name, summary, options.out)
+    return GOOD
+
+
+def plot(options: Namespace) -> int:
+    """Draw a figure, or write its numbers."""
+    from lithofrac.plots import draw
+
+    draw(options.kind, options.input, options.out, data=options.data)
+    return GOOD
+
+
+def report(options: Namespace) -> int:
+    """Write the report of a finished suite."""
+    from lithofrac.report import write_report
+
+    write_report(options.folder, options.out)
+    return GOOD
+
+
+def point(options: Namespace) -> int:
+    """Drive one material point and write its curve."""
+    from lithofrac import point as bench
+    from lithofrac.config import ConfigError
+    from lithofrac.config.material import Material
+
+    rock = Material.load(options.rock)
+    more = {} if options.end_strain is None else {"end_strain": options.end_strain}
+    try:
+        curve = bench.drive(
+            rock, test=options.test, confinement_MPa=options.confinement_MPa, **more
+        )
+    except ValueError as error:  # a test or number that the bench refuses
+        raise ConfigError(str(error)) from None
+    options.out.parent.mkdir(parents=True, exist_ok=True)
+    curve.to_parquet(options.out, index=False)
+    return GOOD
+
+
+COMMANDS = {
+    "check": check,
+    "mesh": mesh,
+    "run": run,
+    "plot": plot,
+    "report": report,
+    "point": point,
+}
+
+
+def _case(name: str, options: Namespace) -> Case:
+    from lithofrac.config.setting import settings
+    from lithofrac.config.suite import find_case
+
+    return find_case(name, options.suite, settings(options.set))
+
+
+def _mesh_of(case: Case, options: Namespace) -> Mesh:
+    """Mesh of the folder that is resumed, of the file that is named, or a new one."""
+    from lithofrac.config import ConfigError
+    from lithofrac.problem import Mesh
+    from lithofrac.scenes import make_mesh
+
+    path = options.out / "mesh.npz" if options.resume else options.mesh
+    if path is None:
+        return make_mesh(case)
+    if options.resume and not path.exists():
+        raise ConfigError(f"{path}: no such file, there is no run to resume in {options.out}")
+    try:
+        return Mesh.load(path)
+    except (ValueError, KeyError, EOFError) as error:
+        raise ConfigError(f"{path}: expected a mesh of `lithofrac mesh` ({error})") from None
+
+
+def _prepare(out: Path, case: Case, mesh: Mesh, resume: bool) -> None:
+    """Make the results folder; what an earlier run left there goes, unless it is resumed."""
+    from lithofrac.config import ConfigError
+    from lithofrac.config.setting import text_of
+    from lithofrac.results.files import write_whole
+
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        if resume:
+            return
+        for pattern in OWN_FILES:
+            for path in out.glob(pattern):
+                path.unlink()
+        write_whole(out / "mesh.npz", mesh.save)
+        write_whole(out / "case.yaml", lambda part: part.write_text(text_of(case)))
+    except OSError as error:
+        raise ConfigError(f"--out {out}: cannot be written ({error.strerror})") from None
+
+
+def _print_plan(name: str, case: Case) -> None:
+    from lithofrac.run import plan
+    from lithofrac.scenes import make_mesh, make_problem
+
+    made = make_mesh(case)
+    problem = make_problem(case, made)
+    expected = plan(problem)
+    width = float(case.material.band_width_of(made.areas().max()))
+    limit = case.material.band_width_limit
+    used = [feature for feature, uses in expected["uses"].items() if uses]
+    unused = [feature for feature, uses in expected["uses"].items() if not uses]
+    rows = [
+        ("case", f"{name}: {case.title}"),
+        ("scene", f"{case.scene.kind}, mesh {case.mesh.seed}"),
+        ("material", case.material.title or "without a title"),
+        ("elements", f"{expected['elements']} on {expected['nodes']} nodes"),
+        (
+            "crack band",
+            f"{1e3 * width:.3g} mm, limit {1e3 * case.material.band_width_limit:.4g} mm",
+        ),
+        ("time step", f"{expected['time_step_s']:.4g} s"),
+        ("steps", f"{expected['steps']} to {1e3 * problem.end_time:.4g} ms"),
+        ("expected run", f"{expected['expected_seconds']:.1f} s on one core"),
+        ("uses", ", ".join(used) or "nothing"),
+        ("leaves out", ", ".join(unused) or "nothing"),
+    ]
+    for key, value in rows:
+        print(f"{key:<14}{value}")
+
+
+def _print_summary(name: str, summary: dict, out: Path) -> None:
+    peak = summary.get("peak_stress_MPa")
+    said = "no axial measure" if peak is None else f"largest axial stress {peak:.4g} MPa"
+    print(
+        f"{name}: {summary['status']}, {summary['steps']} steps in "
+        f"{summary['wall_seconds']:.1f} s, {said}, energy residual {summary['energy_residual']:.1e}; results in {out}"
+    )
+
+
+def _commit() -> str | None:
+    """Commit of the working folder, None outside a repository."""
+    try:
+        done = subprocess.run(
+            ["git", "describe", "--always", "--dirty", "--abbrev=12"],
+            capture_output=True, text=True, timeout=10.0,
+        )  # fmt: skip
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    return done.stdout.strip() or None
+
+
+def _as_keyboard_interrupt(number: int, frame: object) -> None:
+    """A time limit of a cluster stops a run as Ctrl-C does: with a checkpoint."""
+    raise KeyboardInterrupt
