@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -190,19 +189,20 @@ class _Bench:
         self.pressure = pressure
         self.spring = spring if test == "stiff_confinement" else 0.0
         self.knots = rock.table[0] if rock.options[2] else np.zeros(0)
-        self.length = length
         self.scales = kernels.rock_scales(rock)
-        self.call: Callable = partial(step, rock, length_m=length)
-        virgin = State.virgin(rock)
+        self.packed = kernels.pack(rock)
+        self.table = self.packed.table
+        self.softening = np.atleast_1d(softening_modulus(rock, length))
         stress = np.array([[-pressure, -pressure, -pressure, 0.0]])
-        self.state = State(
+        virgin = State.virgin(rock)
+        self.state = [
             stress,
             virgin.plastic_strain,
             virgin.tensile_strength,
-            virgin.axis_angle,
             virgin.opening,
+            np.array([[1.0, 0.0]]),
             virgin.crack,
-        )
+        ]
         self.strain = np.zeros(4)
         self.work = self._elastic_energy(stress[0])
         self.rows: list[dict] = []
@@ -211,68 +211,55 @@ class _Bench:
     def advance(self, axial: float) -> None:
         """Strain to `axial` (tension positive), by way of the knots that lie between."""
         while True:
-            trial = self._solve(axial)
-            crossed = self.knots[
-                (self.knots > self.state.plastic_strain[0])
-                & (self.knots < trial[0].plastic_strain[0])
-            ]
+            state, active, strain = self._solve(axial)
+            crossed = self.knots[(self.knots > self._plastic()) & (self.knots < state[1][0])]
             if len(crossed) == 0:
-                self._accept(axial, *trial)
+                self._accept(state, active, strain)
                 return
             self._land(crossed[0], axial)
+
+    def _plastic(self) -> float:
+        return self.state[1][0]
 
     def _land(self, knot: float, axial: float) -> None:
         """Take the part of the step at whose end the plastic strain is `knot`."""
         start = self.strain[1]
 
         def miss(fraction: float) -> float:
-            state, _, _ = self._solve(start + fraction * (axial - start))
-            return state.plastic_strain[0] - knot
+            return self._solve(start + fraction * (axial - start))[0][1][0] - knot
 
         fraction = brentq(miss, 0.0, 1.0, xtol=1e-15, rtol=1e-14)
-        target = start + fraction * (axial - start)
-        state, info, strain = self._solve(target)
+        state, active, strain = self._solve(start + fraction * (axial - start))
         # Rounding may leave the strain a hair short of the knot: put it there, or it is met again.
-        exact = np.full(1, max(knot, state.plastic_strain[0]))
-        state = State(
-            state.stress,
-            exact,
-            state.tensile_strength,
-            state.axis_angle,
-            state.opening,
-            state.crack,
-        )
-        self._accept(target, state, info, strain)
+        state[1] = np.maximum(state[1], knot)
+        self._accept(state, active, strain)
 
-    def _solve(self, axial: float) -> tuple[State, Info, np.ndarray]:
+    def _solve(self, axial: float) -> tuple[list[np.ndarray], int, np.ndarray]:
         """Step to `axial` with the lateral strain that meets the prescribed pressure."""
         total = self.strain.copy()
         total[1] = axial
         lame, shear = self.scales.lame, self.scales.shear
         stiff = 2.0 * (lame + shear) if self.triaxial else lame + 2.0 * shear
-
-        def outcome(lateral: float):
-            total[0] = lateral
-            total[2] = lateral if self.triaxial else 0.0
-            state, info = self.call((total - self.strain)[None, :], self.state)
-            if info.code[0]:
-                raise CoreError(f"no consistent return at axial strain {axial:.6g}")
-            return state, info
+        last: list = []
 
         def excess(lateral: float) -> float:
-            state, _ = outcome(lateral)
-            return state.stress[0, 0] + self.pressure + self.spring * lateral
+            total[0] = lateral
+            total[2] = lateral if self.triaxial else 0.0
+            increment = (total - self.strain)[None, :]
+            last[:] = kernels.point_step(self.packed, self.softening, increment, *self.state)
+            if last[9][0]:
+                raise CoreError(f"no consistent return at axial strain {axial:.6g}")
+            return last[0][0, 0] + self.pressure + self.spring * lateral
 
         guess = self.strain[0] - lame / stiff * (axial - self.strain[1])
-        lateral = _root(excess, guess, stiff + self.spring, 1e-13 * self.scales.strength_scale)
-        state, info = outcome(lateral)
-        return state, info, total.copy()
+        _root(excess, guess, stiff + self.spring, 1e-13 * self.scales.strength_scale)
+        return last[:6], int(last[8][0]), total
 
-    def _accept(self, axial: float, state: State, info: Info, strain: np.ndarray) -> None:
+    def _accept(self, state: list[np.ndarray], active: int, strain: np.ndarray) -> None:
         change = strain - self.strain
-        self.work += 0.5 * float((state.stress[0] + self.state.stress[0]) @ change)
+        self.work += 0.5 * float((state[0][0] + self.state[0][0]) @ change)
         self.state, self.strain = state, strain
-        self._record(int(info.active[0]))
+        self._record(active)
 
     def _elastic_energy(self, stress: np.ndarray) -> float:
         """Energy per volume [J/m3]."""
@@ -282,11 +269,11 @@ class _Bench:
         return ((1.0 + rock.poisson) * squares - rock.poisson * volume**2) / (2.0 * rock.young)
 
     def _record(self, active: int) -> None:
-        stress, strength = self.state.stress[0] / MPA, self.state.tensile_strength[0] / MPA
+        stress, strength = self.state[0][0] / MPA, self.state[2][0] / MPA
         lateral, axial, across = self.strain[:3]
-        first_is_x = np.cos(2.0 * self.state.axis_angle[0]) >= 0.0
-        plastic = self.state.plastic_strain[0]
-        table = self.rock.table
+        first_is_x = self.state[4][0, 0] >= 0.0
+        plastic = self._plastic()
+        table = self.table
         self.rows.append(
             {
                 "axial_strain": -axial,
@@ -302,7 +289,7 @@ class _Bench:
                 "tensile_strength_lateral_MPa": strength[0 if first_is_x else 1],
                 "tensile_strength_axial_MPa": strength[1 if first_is_x else 0],
                 "tensile_strength_out_of_plane_MPa": strength[2],
-                "dissipated_J_m3": self.work - self._elastic_energy(self.state.stress[0]),
+                "dissipated_J_m3": self.work - self._elastic_energy(self.state[0][0]),
                 "active": active,
             }
         )
@@ -313,18 +300,38 @@ class _Bench:
 
 
 def _root(function: Callable[[float], float], guess: float, stiffness: float, tolerance: float):
-    """Root of a function that rises nowhere faster than `stiffness`, starting at `guess`."""
+    """Solve function(x) = 0 for a function that rises nowhere faster than `stiffness`.
+
+    The last call of `function` is at the root: regula falsi (Illinois), halved now and then.
+    """
     value = function(guess)
     if abs(value) <= tolerance:
-        return guess
-    reach = abs(value) / stiffness
-    near, far = guess, guess - np.copysign(reach, value)
+        return
+    near, at_near, reach = guess, value, abs(value) / stiffness
     for _ in range(60):
-        if function(far) * value <= 0.0:
-            return brentq(function, near, far, xtol=1e-19, rtol=8.9e-16)
-        near, reach = far, 2.0 * reach
         far = near - np.copysign(reach, value)
-    raise CoreError("no lateral strain meets the prescribed pressure")
+        at_far = function(far)
+        if abs(at_far) <= tolerance:
+            return
+        if at_far * at_near < 0.0:
+            break
+        slope = (at_far - at_near) / (far - near)
+        reach = min(8.0 * reach, 1.1 * abs(at_far) / slope) if slope > 0.0 else 2.0 * reach
+        near, at_near = far, at_far
+    else:
+        raise CoreError("no lateral strain meets the prescribed pressure")
+    for trip in range(200):
+        middle = far - at_far * (far - near) / (at_far - at_near)
+        if trip % 8 == 7 or not min(near, far) < middle < max(near, far):
+            middle = 0.5 * (near + far)
+        at_middle = function(middle)
+        if abs(at_middle) <= tolerance or abs(far - near) <= 4e-16 * abs(far):
+            return
+        if at_middle * at_far < 0.0:
+            near, at_near = far, at_far
+        else:
+            at_near *= 0.5
+        far, at_far = middle, at_middle
 
 
 def _along(tensor: np.ndarray, axis: np.ndarray) -> np.ndarray:
