@@ -13,8 +13,8 @@
 module lithofrac_material_return_map
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: no_return_map, ok
-   use lithofrac_material_active_sets, only: apex, member_high, member_low, n_members, &
-      no_planes, plane_bit, tension_count
+   use lithofrac_material_active_sets, only: apex, edge_of, member_high, member_low, &
+      n_members, no_planes, plane_bit
    use lithofrac_material_fixed_strength, only: flow_type, free_choice, return_to_any, &
       return_to_set, trial_type
    use lithofrac_material_flow_split, only: least_flow_at_apex, least_flow_of_equal_maxima, &
@@ -306,7 +306,7 @@ contains
       type(mobilised_type), intent(in) :: now
       type(flow_type), intent(inout) :: flow
 
-      integer :: high, low, middle
+      integer :: group, high, low, middle
       logical :: open(3), equal_maxima, equal_minima
       real(wp) :: x(3)
 
@@ -319,16 +319,20 @@ contains
       equal_maxima = flow%s(high) - flow%s(middle) <= trial%tie
       equal_minima = flow%s(middle) - flow%s(low) <= trial%tie
       if (equal_maxima .and. equal_minima) then
+         group = apex
          call least_flow_at_apex(now, flow%d, open, x)
       else if (equal_maxima .and. count(open) > 1) then
+         group = edge_of(high, middle, low, larger=.false.)
          call least_flow_of_equal_maxima(now, flow%d, open, high, middle, low, x)
       else if (equal_minima .and. count(open) > 1) then
+         group = edge_of(middle, low, high, larger=.true.)
          call least_flow_of_equal_minima(now, flow%d, open, high, middle, low, x)
       else
          return
       end if
       if (sum(x**2) >= sum(flow%x**2)) return
       flow%x = x
+      flow%group = merge(group, no_planes, any(x < 0.0_wp .or. x > 0.0_wp))
    end subroutine take_least_flow
 
    !> Two sets that are both right at the strain where F jumps: mix their flows.
@@ -408,15 +412,20 @@ contains
       logical, intent(in) :: mixed
       integer :: mask
 
-      integer :: i, m
+      integer :: high, i, low, m
+      logical :: shared_high
 
       mask = 0
       do i = 1, 3
          if (flow%d(i) > flow%x(i)) mask = ibset(mask, order(i) - 1)
       end do
+      shared_high = member_high(1, flow%group) == member_high(2, flow%group)
       do m = 1, n_members(flow%group)
-         mask = ibset(mask, plane_bit(order(member_high(m, flow%group)), &
-            order(member_low(m, flow%group))))
+         high = member_high(m, flow%group)
+         low = member_low(m, flow%group)
+         if (n_members(flow%group) == 2 .and. .not. abs(flow%x(merge(low, high, shared_high))) &
+            > 0.0_wp) cycle
+         mask = ibset(mask, plane_bit(order(high), order(low)))
       end do
       if (flow%group == apex) mask = ibset(mask, apex_bit)
       if (mixed) mask = ibset(mask, mixture_bit)
