@@ -308,7 +308,7 @@ contains
 
       integer :: group, high, low, middle
       logical :: open(3), equal_maxima, equal_minima
-      real(wp) :: x(3)
+      real(wp) :: rounding, x(3)
 
       open = flow%s - softened_strength(trial%ft, trial%h, flow%d) >= -trial%tie
       if (.not. any(open)) return
@@ -331,6 +331,12 @@ contains
          return
       end if
       if (sum(x**2) >= sum(flow%x**2)) return
+      ! Planes that only nearly meet do not leave the split open.
+      rounding = 1.0e-13_wp*maxval(abs(flow%d))
+      if (any(flow%d - x < -rounding) .or. any(flow%d - x > rounding .and. .not. open)) return
+      if (equal_maxima .and. .not. equal_minima) then
+         if (min(x(high), x(middle)) < 0.0_wp) return
+      end if
       flow%x = x
       flow%group = merge(group, no_planes, any(x < 0.0_wp .or. x > 0.0_wp))
    end subroutine take_least_flow

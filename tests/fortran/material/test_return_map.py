@@ -175,6 +175,17 @@ def test_explicit_coupling_checks_planes_against_the_old_strength(name, n_random
     assert np.all(results[0] <= implicit[0] * (1 + 1e-9) + 1e-12)
 
 
+def test_two_sets_that_share_their_stress_are_mixed():
+    # The apex falls onto an open tension plane at one strain; F jumps across zero there.
+    rock = packed("quartzite")
+    trial, ft = [145.48699385e6, 247.51066663e6, 121.29131064e6], [27e6, 27e6, 15.98625295e6]
+    e, dep, compressive, stress, planes = returned(rock, -0.5e9, trial, ft, 0.004)
+    assert planes == {"T3", "apex", "mixture"}
+    np.testing.assert_allclose(stress, stress[2], rtol=1e-9)
+    assert e - 0.004 == pytest.approx(np.sqrt(2 / 3) * np.linalg.norm(compressive), rel=1e-12)
+    assert dep[2] > compressive[2]
+
+
 def test_explicit_coupling_leaves_a_plane_above_its_new_strength():
     # Main-plane flow opens axis 1: its plane is met at the old strength, not at the new one.
     names = ("quartzite", "sandstone", "tyndall_limestone")
