@@ -9,6 +9,7 @@ python3 tasks.py setup                           only install what is missing an
 python3 tasks.py benchmark                       speed of the core, kept in out/benchmark.json
 
 Each task sets up what it needs first; once that is done, a second call goes straight to work.
+One file on purpose: it has to run before anything of this project is installed.
 """
 
 import contextlib
@@ -35,19 +36,10 @@ COVERAGE_ASKED = 90  # percent of the lines below fortran/
 # What `build` hands to meson beyond pyproject.toml. Coverage and run-time checks share a build:
 # both want -Og, and a third run of the tests would cost more than it could tell.
 BUILDS = {
-    "release": [],
-    "checked": [
-        "-Dbuildtype=debug",
-        "-Doptimization=g",
-        "-Dchecked=true",
-        "-Db_coverage=true",
-    ],
-    "sanitize": [
-        "-Dbuildtype=debug",
-        "-Doptimization=1",
-        "-Db_sanitize=address,undefined",
-        "-Db_lundef=false",
-    ],
+    "release": "",
+    "checked": "-Dbuildtype=debug -Doptimization=g -Dchecked=true -Db_coverage=true",
+    "sanitize": "-Dbuildtype=debug -Doptimization=1 -Db_sanitize=address,undefined"
+    " -Db_lundef=false",
 }
 
 # What gmsh's library is linked to, and the Debian package that has it.
@@ -232,39 +224,38 @@ def processor():
 
 
 def fresh(stamp, want):
+    """True if a stamp says that the work it stands for is done for just this."""
     return stamp.exists() and stamp.read_text() == want
 
 
-def environment_key():
-    return fingerprint(ROOT / "requirements.txt", extra=sys.version + str(ROOT))
+def configuration(kind):
+    """What meson fixes when it first sees a build folder; another one needs a new folder."""
+    chosen = [os.environ.get(name, "") for name in ("FC", "CC", "FFLAGS", "LITHOFRAC_MESON")]
+    return "\n".join([sys.version, str(ROOT), processor(), *chosen, BUILDS[kind]])
 
 
 def build_key(kind):
     """What a build depends on; equal keys, equal binaries."""
-    sources = [ROOT / name for name in ("pyproject.toml", "meson.build", "meson.options")]
+    files = [ROOT / name for name in ("requirements.txt", "pyproject.toml", "meson.build")]
     folders = [ROOT / name for name in ("fortran", "pywrap", "configs")]
-    chosen = [os.environ.get(name, "") for name in ("FC", "CC", "FFLAGS", "LITHOFRAC_MESON")]
-    extra = "\0".join([environment_key(), processor(), *chosen, *BUILDS[kind]])
-    return fingerprint(*sources, *folders, extra=extra)
+    return fingerprint(*files, ROOT / "meson.options", *folders, extra=configuration(kind))
 
 
 def make_environment():
     """The virtual environment with the pinned requirements."""
-    stamp = VENV / "requirements.stamp"
-    if fresh(stamp, environment_key()):
+    python, interpreter = sys.version + str(ROOT), VENV / "interpreter.stamp"
+    wanted, requirements = fingerprint(ROOT / "requirements.txt"), VENV / "requirements.stamp"
+    if fresh(interpreter, python) and fresh(requirements, wanted):
         return
     install_system()
-    probe = [str(BIN / "python"), "-c", "import sys; print(sys.version)"]
-    works = (BIN / "python").exists() and subprocess.run(
-        probe, capture_output=True, text=True
-    ).stdout.strip() == sys.version.strip()
     with stage("virtual environment and requirements"):
-        if not works:
+        if not fresh(interpreter, python):
             need(sys.executable, "-m", "venv", "--clear", VENV, env=dict(os.environ))
+            interpreter.write_text(python)
         pip = [BIN / "python", "-m", "pip", "install", "-q", "--disable-pip-version-check"]
         need(*pip, PIP)
         need(*pip, "-r", ROOT / "requirements.txt")
-    stamp.write_text(environment_key())
+    requirements.write_text(wanted)
 
 
 def site(kind):
@@ -277,15 +268,19 @@ def build(kind):
 
     Not an editable install: that one runs ninja at import, and parallel jobs then race.
     """
-    folder, want = BUILD / kind, build_key(kind)
-    stamp, owner = BUILD / f"{kind}.stamp", BUILD / f"{kind}.owner"
+    folder, home = BUILD / kind, VENV if kind == "release" else site(kind)
+    stamp, owner = home / "build.stamp", BUILD / f"{kind}.configuration"
+    want = build_key(kind)
     if fresh(stamp, want):
         return 0
-    if not fresh(owner, environment_key()):  # meson keeps the paths of its first configuration
+    if not fresh(owner, configuration(kind)):
         shutil.rmtree(folder, ignore_errors=True)
+    for path in (folder, home):
+        path.mkdir(parents=True, exist_ok=True)
+    owner.write_text(configuration(kind))
     stamp.unlink(missing_ok=True)
-    options = [*BUILDS[kind], *os.environ.get("LITHOFRAC_MESON", "").split()]
-    where = ["--force-reinstall"] if kind == "release" else ["--target", site(kind), "--upgrade"]
+    options = [*BUILDS[kind].split(), *os.environ.get("LITHOFRAC_MESON", "").split()]
+    where = ["--force-reinstall"] if kind == "release" else ["--target", home, "--upgrade"]
     log = LOG / f"build-{kind}.txt"
     with stage(f"build {kind}"):
         code = call(
@@ -297,7 +292,6 @@ def build(kind):
         say(f"the {kind} build failed; its words ({log.relative_to(ROOT)}):")
         say(log.read_text()[-8000:])
         return code
-    owner.write_text(environment_key())
     stamp.write_text(want)
     return 0
 
@@ -312,16 +306,18 @@ def setup():
 # ---------------------------------------------------------------- reproduce, benchmark
 
 
-def reproduce(suite, extra):
-    """The whole suite on all cores, then its report. `extra` goes to snakemake."""
+def reproduce(extra):
+    """A suite on all cores, then its report; `extra` goes to snakemake, but for --suite FILE."""
+    if extra[:1] == ["--suite"]:
+        extra = ["--config", f"suite={' '.join(extra[1:2])}", *extra[2:]]
     setup()
-    snakemake = [BIN / "python", "-m", "snakemake", "--configfile", suite]
-    with stage(f"suite {suite}"):
-        need(*snakemake, "--cores", "all", *extra)
+    snakemake = [BIN / "python", "-m", "snakemake"]
+    with stage("suite"):
+        need(*snakemake, "--cores", "all", "--rerun-incomplete", *extra)
     if {"-n", "--dry-run", "--dryrun"} & set(extra):
         return
     with stage("report"):
-        need(*snakemake, "--report", "out/report.html")
+        need(*snakemake, "--report", "out/report.html", *extra)
     say("read out/report.html or out/report.md")
 
 
@@ -345,7 +341,7 @@ def lint():
     linters = {
         "ruff check": ["ruff", "check", "--quiet"],
         "ruff format": ["ruff", "format", "--check", "--quiet"],
-        "snakefmt": ["snakefmt", "--check", "--quiet", "Snakefile"],
+        "snakefmt": ["snakefmt", "--check", "Snakefile"],
         "fortitude": ["fortitude", "check", "--output-format=concise", "fortran", "pywrap"],
     }
     failed = []
@@ -360,15 +356,12 @@ def lint():
 
 def sanitizer_libraries():
     """Run-time libraries that have to be in the process before Python starts."""
-    compiler = os.environ.get("CC", "gcc")
-    names = ["libasan.so", "libubsan.so"]
+    ask = [os.environ.get("CC", "gcc")]
     paths = [
-        subprocess.run(
-            [compiler, f"-print-file-name={name}"], capture_output=True, text=True
-        ).stdout.strip()
-        for name in names
+        subprocess.check_output([*ask, f"-print-file-name={name}"], text=True).strip()
+        for name in ("libasan.so", "libubsan.so")
     ]
-    return " ".join(path for path in paths if os.sep in path)
+    return " ".join(paths)
 
 
 def test_environment(kind):
@@ -390,18 +383,16 @@ def test_environment(kind):
 
 def run_tests(kind, markers):
     """Build, then pytest; exit code. Words and counts go to build/log/."""
-    counts = LOG / f"{kind}.xml"
-    counts.unlink(missing_ok=True)
+    counts, log = LOG / f"{kind}.xml", LOG / f"{kind}.txt"
+    for old in (counts, log, *(BUILD / kind).rglob("*.gcda")):  # counts of lines add up otherwise
+        old.unlink(missing_ok=True)
     if build(kind):
         return 1
-    if kind == "checked":
-        for old in (BUILD / kind).rglob("*.gcda"):
-            old.unlink()
     with stage(f"tests, {kind} build"):
         return call(
             BIN / "python", "-m", "pytest", "-m", markers, "-rP", "--durations=8",
             "-p", "no:cacheprovider", f"--junitxml={counts}",
-            env=test_environment(kind), log=LOG / f"{kind}.txt",
+            env=test_environment(kind), log=log,
         )  # fmt: skip
 
 
@@ -461,10 +452,7 @@ def main(arguments):
     if task == "setup" and not extra:
         setup()
     elif task == "reproduce":
-        suite = "configs/suite.yaml"
-        if extra[:1] == ["--suite"] and len(extra) > 1:
-            suite, extra = extra[1], extra[2:]
-        reproduce(suite, extra)
+        reproduce(extra)
     elif task == "test" and extra in ([], ["--all"]):
         test(everything=bool(extra))
     elif task == "benchmark":

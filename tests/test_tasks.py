@@ -2,6 +2,7 @@
 
 import ast
 import importlib.util
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -118,16 +119,39 @@ def test_second_set_up_runs_no_command(tasks, calls, monkeypatch):
 
 @pytest.mark.no_core
 @pytest.mark.parametrize(
-    ("changed", "commands"), [("fortran/table.f90", 1), ("requirements.txt", 4)]
+    ("change", "commands"),
+    [
+        (lambda tasks: (tasks.ROOT / "fortran" / "table.f90").write_text("changed"), 1),
+        (lambda tasks: (tasks.ROOT / "requirements.txt").write_text("changed"), 3),
+        (lambda tasks: shutil.rmtree(tasks.VENV), 4),
+    ],
+    ids=["source: build", "requirements: pip, all, build", "no venv: everything"],
 )
-def test_change_repeats_only_what_depends_on_it(tasks, calls, monkeypatch, changed, commands):
+def test_change_repeats_only_what_depends_on_it(tasks, calls, monkeypatch, change, commands):
     monkeypatch.setattr(tasks, "install_system", lambda: None)
     tasks.VENV.mkdir()
     tasks.setup()
     calls.clear()
-    (tasks.ROOT / changed).write_text("changed")
+    change(tasks)
+    tasks.VENV.mkdir(exist_ok=True)
     tasks.setup()
     assert len(calls) == commands
+
+
+@pytest.mark.no_core
+def test_other_processor_or_flags_start_from_an_empty_build_folder(tasks, calls, monkeypatch):
+    """Meson keeps its first options, and ninja does not see that `native` means another one."""
+    old = tasks.BUILD / "release" / "old.o"
+    tasks.VENV.mkdir()
+    tasks.build("release")
+    old.write_text("")
+    (tasks.ROOT / "fortran" / "table.f90").write_text("changed")
+    tasks.build("release")
+    assert old.exists()
+    monkeypatch.setattr(tasks, "processor", lambda: "another")
+    tasks.build("release")
+    assert not old.exists()
+    assert len(calls) == 3
 
 
 @pytest.mark.no_core
@@ -137,6 +161,24 @@ def test_failed_build_is_not_taken_for_a_finished_one(tasks, monkeypatch):
     monkeypatch.setattr(tasks, "call", lambda *_, **__: 1)
     assert tasks.build("release") == 1
     assert tasks.build("release") == 1
+
+
+@pytest.mark.no_core
+def test_suite_and_further_arguments_reach_snakemake(tasks, calls, monkeypatch):
+    monkeypatch.setattr(tasks, "setup", lambda: None)
+    tasks.main(["reproduce", "--suite", "configs/suite_quick.yaml", "--keep-going"])
+    suite, report = calls
+    for command in (suite, report):
+        assert command[-3:] == ["--config", "suite=configs/suite_quick.yaml", "--keep-going"]
+    assert suite[3:5] == ["--cores", "all"]
+    assert report[3:5] == ["--report", "out/report.html"]
+
+
+@pytest.mark.no_core
+def test_dry_run_writes_no_report(tasks, calls, monkeypatch):
+    monkeypatch.setattr(tasks, "setup", lambda: None)
+    tasks.main(["reproduce", "-n"])
+    assert len(calls) == 1
 
 
 @pytest.mark.no_core

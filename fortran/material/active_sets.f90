@@ -37,7 +37,7 @@ module lithofrac_material_active_sets
 
 contains
 
-   !> True if the flow directions of these planes are independent.
+   !> True if the flow directions of these planes are independent (no plane: no flow).
    pure function feasible(tension, group)
       integer, intent(in) :: tension  !! tension planes, bits 0 to 2
       integer, intent(in) :: group
@@ -45,7 +45,7 @@ contains
 
       select case (n_members(group))
       case (0)
-         feasible = (group == apex) .eqv. tension == 0
+         feasible = group == no_planes .or. tension == 0
       case (1)
          feasible = .not. (btest(tension, member_high(1, group) - 1) .and. &
             btest(tension, member_low(1, group) - 1))

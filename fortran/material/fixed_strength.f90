@@ -64,7 +64,7 @@ contains
          do tension = 0, 7
             if (prescribed /= free_choice .and. prescribed /= tension) cycle
             if (group == likely_group .and. tension == likely_tension) cycle
-            if (.not. feasible(tension, group) .and. tension + group /= 1) cycle
+            if (.not. feasible(tension, group)) cycle
             flow%tension = tension
             flow%group = group
             call return_to_set(trial, now, prescribed, flow, found)
@@ -136,6 +136,7 @@ contains
    end subroutine return_to_apex
 
    !> Solve the linear problem of one set, with the stages of its tension planes.
+   !> Stages follow from the strain of the last trial; should they never settle, all are tried.
    pure subroutine solve_linear(trial, now, flow, opening, found)
       type(trial_type), intent(in) :: trial
       type(mobilised_type), intent(in) :: now
@@ -143,39 +144,67 @@ contains
       real(wp), intent(out) :: opening(3)  !! multipliers of the tension planes [-]
       logical, intent(out) :: found
 
-      integer :: i, stage(3), stage_now, trip
-      logical :: settled
+      integer :: stage(3), trip
+      logical :: flows, settled
 
       stage = merge(softening, exhausted, trial%ft > 0.0_wp)
-      do trip = 1, max_kinks
-         call solve_stage(trial, now, stage, flow, found)
-         if (.not. found) return
-         settled = .true.
-         do i = 1, 3
-            if (.not. btest(flow%tension, i - 1) .or. .not. trial%ft(i) > 0.0_wp) cycle
-            stage_now = softening
-            if (flow%d(i) < 0.0_wp) stage_now = intact
-            if (trial%ft(i) + trial%h*flow%d(i) < 0.0_wp) stage_now = exhausted
-            settled = settled .and. stage_now == stage(i)
-            stage(i) = stage_now
-         end do
+      do trip = 1, max_kinks + 27
+         if (trip > max_kinks) then
+            stage = modulo((trip - max_kinks - 1)/[1, 3, 9], 3)
+            if (any(stage /= softening .and. .not. open_planes(flow%tension))) cycle
+         end if
+         call solve_stage(trial, now, stage, flow, flows, found)
+         if (.not. found) then
+            if (any(open_planes(flow%tension))) cycle
+            return
+         end if
+         call compare_stages(trial, flow, trip <= max_kinks, stage, settled)
          if (settled) exit
       end do
-      found = settled
+      found = settled .and. flows
       opening = flow%d - flow%x
    end subroutine solve_linear
+
+   pure function open_planes(tension) result(open)
+      integer, intent(in) :: tension
+      logical :: open(3)
+
+      open = [btest(tension, 0), btest(tension, 1), btest(tension, 2)]
+   end function open_planes
+
+   !> Stages that the strains ask for, and whether these were the ones assumed.
+   pure subroutine compare_stages(trial, flow, follow, stage, settled)
+      type(trial_type), intent(in) :: trial
+      type(flow_type), intent(in) :: flow
+      logical, intent(in) :: follow          !! let `stage` change
+      integer, intent(inout) :: stage(3)
+      logical, intent(out) :: settled
+
+      integer :: asked, i
+
+      settled = .true.
+      do i = 1, 3
+         if (.not. btest(flow%tension, i - 1) .or. .not. trial%ft(i) > 0.0_wp) cycle
+         asked = softening
+         if (flow%d(i) < 0.0_wp) asked = intact
+         if (trial%ft(i) + trial%h*flow%d(i) < 0.0_wp) asked = exhausted
+         settled = settled .and. asked == stage(i)
+         if (follow) stage(i) = asked
+      end do
+   end subroutine compare_stages
 
    !> The linear problem with the stage of every tension plane given.
    !>
    !> With tau = lame tr(d), an active tension plane gives d_i = (y_i - tau)/h_i, any other
    !> axis d_i = (flow of the Mohr-Coulomb multipliers)_i. Both make
    !> s_i = alpha_i - beta_i tau - own_i x_i, and tau is linear in the multipliers.
-   pure subroutine solve_stage(trial, now, stage, flow, found)
+   pure subroutine solve_stage(trial, now, stage, flow, flows, found)
       type(trial_type), intent(in) :: trial
       type(mobilised_type), intent(in) :: now
       integer, intent(in) :: stage(3)
       type(flow_type), intent(inout) :: flow
-      logical, intent(out) :: found
+      logical, intent(out) :: flows        !! no Mohr-Coulomb multiplier is negative
+      logical, intent(out) :: found        !! the problem has one answer
 
       integer :: high, i, low, m, members
       real(wp) :: alpha(3), beta(3), det, direction(3, 2), fall(3, 2), inverse(3)
@@ -203,6 +232,7 @@ contains
 
       lambda = 0.0_wp
       flow%x = 0.0_wp
+      flows = .true.
       found = .false.
       if (members > 0) then
          direction = 0.0_wp
@@ -219,7 +249,7 @@ contains
             matrix(m, :members) = now%a*fall(high, :members) - now%b*fall(low, :members)
          end do
          if (members == 1) then
-            if (.not. matrix(1, 1) > 0.0_wp) return
+            if (.not. abs(matrix(1, 1)) > 0.0_wp) return
             lambda(1) = over(1)/matrix(1, 1)
          else
             det = matrix(1, 1)*matrix(2, 2) - matrix(1, 2)*matrix(2, 1)
@@ -227,8 +257,8 @@ contains
             lambda(1) = (over(1)*matrix(2, 2) - over(2)*matrix(1, 2))/det
             lambda(2) = (over(2)*matrix(1, 1) - over(1)*matrix(2, 1))/det
          end if
-         if (any(lambda < -0.1_wp*trial%tolerance/trial%g2)) return
-         lambda = max(lambda, 0.0_wp)
+         flows = all(lambda >= -0.1_wp*trial%tolerance/trial%g2)
+         if (flows) lambda = max(lambda, 0.0_wp)
          do m = 1, members
             flow%x = flow%x + lambda(m)*direction(:, m)
             tau = tau + lambda(m)*weight*sum(direction(:, m), mask=own > 0.0_wp)

@@ -107,21 +107,18 @@ contains
       real(wp) :: excess(width), axis(width, 2)
       integer :: lane
 
-      if (state%touched(chunk)) then
-         call check_softened(stress, state%axis(:, :, chunk), state%ft(:, :, chunk), &
-            state%sin_phi(:, chunk), state%c_cos_phi(:, chunk), excess, axis)
-      else
+      if (.not. state%touched(chunk)) then
          call check_virgin(stress, rock, excess)
-      end if
-      if (maxval(excess) > rock%yield_tolerance) then
+         if (maxval(excess) <= rock%yield_tolerance) return
          state%touched(chunk) = .true.
+      end if
+      call check_softened(stress, state%axis(:, :, chunk), state%ft(:, :, chunk), &
+         state%sin_phi(:, chunk), state%c_cos_phi(:, chunk), excess, axis)
+      if (maxval(excess) > rock%yield_tolerance) then
          do lane = 1, chunks%filled(chunk)
-            if (excess(lane) > rock%yield_tolerance) then
+            if (excess(lane) > rock%yield_tolerance) &
                call return_lane(chunks, chunk, lane, rock, fields, dt, state, stress, failure)
-            end if
          end do
-      else if (.not. state%touched(chunk)) then
-         return
       end if
       where (excess <= rock%yield_tolerance)
          state%axis(:, 1, chunk) = axis(:, 1)
@@ -245,13 +242,13 @@ contains
       real(wp) :: stress(4)
 
       real(wp) :: du(4), strain(4), rotation(3)
+      integer :: corner(3)
 
-      associate (corner => chunks%node(lane, :, chunk))
-         call gather_previous(corner, fields%u, fields%v, dt, du)
-         strain(3) = 0.0_wp
-         if (chunks%axisymmetric) strain(3) = chunks%hoop(lane, chunk) &
-            *sum(fields%u(1, corner) - dt*fields%v(1, corner))
-      end associate
+      corner = chunks%node(lane, :, chunk)
+      call gather_previous(corner, fields%u, fields%v, dt, du)
+      strain(3) = 0.0_wp
+      if (chunks%axisymmetric) strain(3) = chunks%hoop(lane, chunk) &
+         *sum(fields%u(1, corner) - dt*fields%v(1, corner))
       call strains(1, chunks%gradient(lane, :, chunk), du, strain, rotation)
       call elastic_stress(1, rock%lame, rock%shear, strain, state%strain(lane, :, chunk), stress)
    end function previous_stress

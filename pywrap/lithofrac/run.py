@@ -221,7 +221,7 @@ class _Session:
             "wall_seconds": self.wall_seconds,
             "element_steps_per_core_second": elements * run.step / core,
             "energy": {name: _finite(value) for name, value in energy.iloc[-1].items()},
-            "energy_residual": _finite(energy["residual_relative"].abs().max()),
+            "energy_residual": _residual(energy),
             **_peak(history, energy),
             "max_plastic_strain": _finite(
                 run.elements(np.arange(elements)).plastic_strain.max()
@@ -251,6 +251,14 @@ def _peak(history, energy) -> dict:
         "peak_strain": _finite(history["axial_strain"].iloc[row]),
         "kinetic_ratio_at_peak": _finite(entry["kinetic_J"] / internal) if internal > 0 else None,
     }
+
+
+def _residual(energy) -> float | None:
+    """Largest residual of the ledger over the largest energy that the run has seen."""
+    internal = energy["elastic_J"] + energy["compressive_dissipation_J"]
+    internal = internal + energy["fracture_dissipation_J"]
+    scale = max(internal.abs().max(), energy["external_J"].abs().max(), energy["kinetic_J"].max())
+    return _finite(energy["residual_J"].abs().max() / scale) if scale > 0.0 else 0.0
 
 
 def _finite(value: float) -> float | None:

@@ -40,6 +40,4 @@ def compare(x: np.ndarray, y: np.ndarray, x_ref: np.ndarray, y_ref: np.ndarray) 
         raise ValueError("all reference values are 0, expected a scale for relative errors")
     rms = float(np.sqrt(np.mean(difference**2)))
     largest = float(np.abs(difference).max())
-    return CurveError(
-        rms, rms / scale, largest / scale, int(inside.sum()), int((~inside).sum())
-    )
+    return CurveError(rms, rms / scale, largest / scale, int(inside.sum()), int((~inside).sum()))

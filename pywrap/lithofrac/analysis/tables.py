@@ -6,21 +6,21 @@ differences are relative to the expected value.
 
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from lithofrac.analysis.bench import find_bench
 from lithofrac.analysis.curves import compare
 from lithofrac.analysis.fit import StrengthLine, fit_line
-from lithofrac.analysis.mohr_coulomb import (
-    first_yield,
-    peak_strength,
-    residual_strength,
-)
+from lithofrac.analysis.kirsch import infinite_plate
+from lithofrac.analysis.mohr_coulomb import first_yield, peak_strength, residual_strength
 from lithofrac.analysis.runs import Run, find_runs
 from lithofrac.config.material import Material
 from lithofrac.data import Curve, load_curves, measured_strength
+from lithofrac.problem import Mesh
 
 MPA = 1e6
+HOOP = {"crown": ("stress_xx_MPa", 0), "sidewall": ("stress_yy_MPa", 1)}  # probe -> hoop stress
 NOT_DIGITISED = "experiment: not digitised"
 SUMMARY = (
     "status",
@@ -128,6 +128,37 @@ def zigong_fit(inputs: list[Path], data: Path) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["quantity", "value", "plus_minus"])
 
 
+def kirsch(inputs: list[Path], data: Path) -> pd.DataFrame:
+    """Hoop stress at crown and sidewall of an elastic hole, over the stress applied.
+
+    Both are compared at the centroid of the recorded element; the infinite plate leaves out the
+    finite width of the block, so a difference of a few percent is expected.
+    """
+    rows = []
+    for run in find_runs(inputs):
+        table = pd.read_parquet(run.folder / "probes.parquet")
+        mesh = Mesh.load(run.folder / "mesh.npz")
+        for row in table.groupby("probe").tail(1).itertuples():
+            if row.probe not in HOOP:
+                continue
+            component, index = HOOP[row.probe]
+            centre = mesh.centroids()[row.element]
+            radius = 1e-3 * run.case["scene"]["hole_radius_mm"]
+            exact = infinite_plate(centre[None], radius)[0, index]
+            computed = -getattr(row, component) / run.case["loading"]["stress_MPa"]
+            rows.append(
+                {
+                    "case": run.name,
+                    "point": row.probe,
+                    "distance_mm": 1e3 * float(np.hypot(*centre)),
+                    "infinite_plate": exact,
+                    "computed": computed,
+                    "difference_percent": 100.0 * (computed / exact - 1.0),
+                }
+            )
+    return pd.DataFrame(rows)
+
+
 def run_time(inputs: list[Path], data: Path) -> pd.DataFrame:
     """Size, cost and energy error of the runs."""
     rows = [{"case": run.name, **{k: run.summary.get(k) for k in SUMMARY}}
@@ -159,7 +190,7 @@ def errors(inputs: list[Path], data: Path) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=columns)
 
 
-def _computed(curve: Curve, runs: list[Run]) -> tuple | None:
+def _computed(curve: Curve, runs: list[Run]) -> tuple:
     """Computed x and y to stand beside a digitised curve; empty when there are none."""
     name = curve.sheet.compare_with
     if curve.sheet.figure == "10":

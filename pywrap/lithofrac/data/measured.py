@@ -46,7 +46,7 @@ def measured_strength(data: Path, source: str) -> pd.DataFrame:
         if bad.any():
             row = int(np.argmax(bad))
             raise DataError(
-                f"{path}: line {row + 2}, column '{column}': {table[column].iloc[row]!r},"
+                f"{path}: line {row + 2}, column '{column}': '{table[column].iloc[row]}',"
                 " expected a finite number"
             )
     return table

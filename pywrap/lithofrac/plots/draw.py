@@ -26,6 +26,7 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "tautona": tables.tautona,
     "zigong": tables.zigong,
     "zigong_fit": tables.zigong_fit,
+    "kirsch": tables.kirsch,
     "run_time": tables.run_time,
     "results": results.verdicts,
 }

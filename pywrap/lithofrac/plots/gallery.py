@@ -23,7 +23,9 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     curves, *specimens = axes[0]
     for run in runs:
         draw_curve(curves, run, colours[run.confinement_MPa])
-        curves.plot([], [], color=colours[run.confinement_MPa], label=f"{run.confinement_MPa:g} MPa")
+        curves.plot(
+            [], [], color=colours[run.confinement_MPa], label=f"{run.confinement_MPa:g} MPa"
+        )
     curves.set(xlabel="axial strain [%]", ylabel="axial stress [MPa]", xlim=(0, None))
     curves.set_title(f"sandstone, {TITLES.get(runs[0].test, runs[0].test)}")
     curves.set_ylim(0, None)

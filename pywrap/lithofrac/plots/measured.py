@@ -1,4 +1,4 @@
-"""Strengths measured elsewhere: Table 1 beside TauTona quartzite, a line beside Zigong sandstone."""
+"""Measured strengths: Table 1 beside TauTona quartzite, a fitted line beside Zigong sandstone."""
 
 from pathlib import Path
 

@@ -20,9 +20,7 @@ ARROWS = 12  # symbols along one boundary at most
 def figure(inputs: list[Path], data: Path) -> Figure:
     """Mesh of one run, rebuilt boundary conditions drawn on it."""
     run = find_runs(inputs)[0]
-    problem = make_problem(
-        load_case(run.folder / "case.yaml"), Mesh.load(run.folder / "mesh.npz")
-    )
+    problem = make_problem(load_case(run.folder / "case.yaml"), Mesh.load(run.folder / "mesh.npz"))
     drawn, axes = style.new_figure(height=5.0)
     draw_problem(axes[0, 0], problem)
     axes[0, 0].set_title(run.name)

@@ -8,13 +8,13 @@ import matplotlib
 
 matplotlib.use("Agg")  # before pyplot: no display is needed
 
-from pathlib import Path  # noqa: E402
+from pathlib import Path
 
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from matplotlib.axes import Axes  # noqa: E402
-from matplotlib.colors import ListedColormap  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
 
 WIDTH = 7.2  # inches, a page's text width
 BLACK, GREY, LIGHT = "#000000", "#6b6b6b", "#d9d9d9"
@@ -57,7 +57,7 @@ def new_figure(rows: int = 1, columns: int = 1, height: float = 3.2, **kwargs) -
 def confinement_colours(confinements: list[float]) -> dict[float, tuple]:
     """Dark to light with rising confinement; the light end stays visible on white."""
     levels = sorted(set(confinements))
-    shades = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, max(len(levels), 1)))
+    shades = plt.get_cmap("viridis")(np.linspace(0.0, 0.82, max(len(levels), 1)))
     return {level: tuple(shade) for level, shade in zip(levels, shades, strict=False)}
 
 

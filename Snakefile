@@ -1,0 +1,197 @@
+# From the cases of a suite to the report. Every rule calls the command line and nothing else; all
+# results are below out/. Another suite: `--config suite=configs/suite_quick.yaml`.
+from pathlib import Path
+
+from lithofrac.config import load_suite
+
+SUITE = config.get("suite", "configs/suite.yaml")
+OUT = config.get("out", "out")
+ENTRIES = load_suite(SUITE)
+CASES = {name: ENTRIES.case(name).resolved() for name in ENTRIES.cases}
+SCENES = {case["title"]: name for name, case in reversed(CASES.items())}.values()
+
+ROCKS = ["quartzite", "sandstone", "tyndall_limestone"]
+CONFINEMENTS = ["00", "01", "02", "05", "10", "15", "20", "30", "40"]  # MPa
+BENCH = [f"{OUT}/bench/{{rock}}/triaxial_p{level}.parquet" for level in CONFINEMENTS]
+QUARTZITE = "configs/materials/quartzite.yaml"
+
+# Sources that decide a result beside its case, and those that decide a figure beside its results.
+CORE = sorted(map(str, Path("fortran").rglob("*.f90")))
+PARTS = ["pywrap/lithofrac/analysis", "pywrap/lithofrac/data", "pywrap/lithofrac/plots"]
+DRAWING = sorted(str(file) for part in PARTS for file in Path(part).glob("*.py"))
+DRAWING += sorted(
+    str(file) for file in Path("data").rglob("*.*") if file.suffix != ".md"
+)
+
+RUNS = expand(f"{OUT}/runs/{{case}}/summary.json", case=CASES)
+SANDSTONE = [run for run in RUNS if "/sandstone_" in run]
+CURVES = expand(BENCH, rock=ROCKS)
+TABLES = {
+    "results": ["reports/bands.csv", QUARTZITE, *RUNS, *CURVES],
+    "single_element": CURVES,
+    "strength": SANDSTONE,
+    "errors": SANDSTONE,
+    "tautona": [QUARTZITE],
+    **{"zigong": [], "zigong_fit": []},
+    "kirsch": [run for run in RUNS if "/kirsch" in run],
+    "run_time": RUNS,
+}
+
+
+report: "reports/captions/suite.rst"
+
+
+wildcard_constraints:
+    case="|".join(CASES),
+
+
+rule all:
+    input:
+        f"{OUT}/report.md",
+        f"{OUT}/figures/sandstone.png",
+        expand(f"{OUT}/figures/single_element_{{rock}}.svg", rock=ROCKS),
+        expand(f"{OUT}/figures/mesh_{{case}}.svg", case=SCENES),
+
+
+rule simulate:
+    input:
+        CORE,
+    output:
+        summary=f"{OUT}/runs/{{case}}/summary.json",
+        history=f"{OUT}/runs/{{case}}/history.parquet",
+    log:
+        f"{OUT}/log/simulate_{{case}}.txt",
+    benchmark:
+        f"{OUT}/benchmarks/{{case}}.tsv"
+    params:
+        case=lambda wildcards: CASES[wildcards.case],
+    message:
+        "Mesh and run {wildcards.case}"
+    shell:
+        "lithofrac run {wildcards.case} --suite {SUITE} --out {OUT}/runs/{wildcards.case}"
+        " --threads {threads} > {log} 2>&1"
+
+
+rule bench:
+    input:
+        CORE,
+        rock="configs/materials/{rock}.yaml",
+    output:
+        f"{OUT}/bench/{{rock}}/triaxial_p{{confinement}}.parquet",
+    log:
+        f"{OUT}/log/bench_{{rock}}_{{confinement}}.txt",
+    message:
+        "Drive one material point of {wildcards.rock} at {wildcards.confinement} MPa"
+    shell:
+        "lithofrac point {input.rock} --test triaxial --confinement-MPa {wildcards.confinement}"
+        " --out {output} > {log} 2>&1"
+
+
+rule plot_bench:
+    input:
+        DRAWING,
+        curves=BENCH,
+    output:
+        report(
+            f"{OUT}/figures/single_element_{{rock}}.svg",
+            caption="reports/captions/single_element.rst",
+            category="1 Material point",
+        ),
+    log:
+        f"{OUT}/log/plot_bench_{{rock}}.txt",
+    message:
+        "Plot the material point of {wildcards.rock}"
+    shell:
+        "lithofrac plot single_element {input.curves} --out {output} > {log} 2>&1"
+
+
+rule plot_run:
+    input:
+        DRAWING,
+        run=f"{OUT}/runs/{{case}}/summary.json",
+    output:
+        mesh=report(
+            f"{OUT}/figures/mesh_{{case}}.svg",
+            caption="reports/captions/mesh.rst",
+            category="4 Scenes",
+        ),
+        energy=report(
+            f"{OUT}/figures/energy_{{case}}.svg",
+            caption="reports/captions/energy.rst",
+            category="4 Scenes",
+        ),
+    log:
+        f"{OUT}/log/plot_run_{{case}}.txt",
+    message:
+        "Plot mesh and energy of {wildcards.case}"
+    shell:
+        "(lithofrac plot mesh {input.run} --out {output.mesh} &&"
+        " lithofrac plot energy {input.run} --out {output.energy}) > {log} 2>&1"
+
+
+rule plot_suite:
+    input:
+        DRAWING,
+        runs=SANDSTONE,
+        stiff=[run for run in SANDSTONE if "/sandstone_plane_strain_p" in run],
+        rock=QUARTZITE,
+    output:
+        curves=report(
+            f"{OUT}/figures/stress_strain.svg",
+            caption="reports/captions/stress_strain.rst",
+            category="2 Sandstone",
+        ),
+        strength=report(
+            f"{OUT}/figures/strength.svg",
+            caption="reports/captions/strength.rst",
+            category="2 Sandstone",
+        ),
+        gallery=f"{OUT}/figures/sandstone.png",
+        measured=report(
+            f"{OUT}/figures/measured.svg",
+            caption="reports/captions/measured.rst",
+            category="3 Measured strengths",
+        ),
+    log:
+        f"{OUT}/log/plot_suite.txt",
+    message:
+        "Plot the sandstone tests and the measured strengths"
+    shell:
+        "(lithofrac plot stress_strain {input.runs} --out {output.curves} &&"
+        " lithofrac plot strength {input.runs} --out {output.strength} &&"
+        " lithofrac plot gallery {input.stiff} --out {output.gallery} &&"
+        " lithofrac plot measured {input.rock} --out {output.measured}) > {log} 2>&1"
+
+
+rule table:
+    input:
+        DRAWING,
+        sources=lambda wildcards: TABLES[wildcards.table],
+    output:
+        f"{OUT}/tables/{{table}}.csv",
+    log:
+        f"{OUT}/log/table_{{table}}.txt",
+    message:
+        "Write the table {wildcards.table}"
+    shell:
+        "lithofrac plot {wildcards.table} {input.sources} --out {output} > {log} 2>&1"
+
+
+rule summary:
+    input:
+        expand(f"{OUT}/tables/{{table}}.csv", table=TABLES),
+        Path("reports/sheets").glob("*.md"),
+    output:
+        markdown=f"{OUT}/report.md",
+        page=report(
+            f"{OUT}/summary.html",
+            caption="reports/captions/summary.rst",
+            category="0 Results",
+        ),
+    log:
+        f"{OUT}/log/summary.txt",
+    message:
+        "Write the summary"
+    shell:
+        "(lithofrac report {OUT} --out {output.markdown} &&"
+        " lithofrac report {OUT} --out {output.page}) > {log} 2>&1"

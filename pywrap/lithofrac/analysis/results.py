@@ -1,0 +1,169 @@
+"""The table of results: each quantity, what it is held against, its band, and a verdict.
+
+Bands are fixed beforehand in `reports/bands.csv` and are an input: a verdict never sets its own.
+"""
+
+from pathlib import Path
+
+import pandas as pd
+
+from lithofrac.analysis.runs import find_runs
+from lithofrac.analysis.tables import NOT_DIGITISED, errors, single_element, strength, tautona
+from lithofrac.analysis.tables import zigong_line as fitted_line
+
+COLUMNS = ("case", "quantity", "expected", "measured", "computed", "difference", "band", "verdict")
+HOLDS, FAILS, OPEN = "holds", "does not hold", "cannot be checked"
+
+
+def verdicts(inputs: list[Path], data: Path) -> pd.DataFrame:
+    """All results of the suite, one row each, as text with units.
+
+    Parameters
+    ----------
+    inputs : `bands.csv`, the quartzite's material file, `summary.json` of runs, bench curves
+    data : the folder `data/`
+    """
+    by_suffix = {suffix: [path for path in map(Path, inputs) if path.suffix == suffix]
+                 for suffix in (".csv", ".yaml", ".json", ".parquet")}  # fmt: skip
+    bands = pd.read_csv(by_suffix[".csv"][0]).set_index("quantity")["band"]
+    rows = [
+        *_single_elements(by_suffix[".parquet"], data, bands),
+        *_sandstone(by_suffix[".json"], data, bands),
+        *_measured(by_suffix[".yaml"], data, bands),
+        *_quality(by_suffix[".json"], bands),
+    ]
+    return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def _single_elements(paths: list[Path], data: Path, bands: pd.Series) -> list[dict]:
+    """Worst confinement of each rock, beside the closed form."""
+    if not paths:
+        return []
+    table, band = single_element(paths, data), bands["single_element_strength"]
+    rows = []
+    for (rock, test), group in table.groupby(["rock", "test"]):
+        worst = group.loc[group["difference_percent"].abs().idxmax()]
+        rows.append(
+            {
+                "case": f"single element, {rock.replace('_', ' ')}, {test}",
+                "quantity": f"strength at {worst['confinement_MPa']:g} MPa,"
+                f" worst of {len(group)} confinements",
+                "expected": f"{worst['closed_form_MPa']:.1f} MPa (closed form of Table 1)",
+                "measured": "-",
+                "computed": f"{worst['strength_MPa']:.1f} MPa",
+                **_judged(worst["difference_percent"], band),
+            }
+        )
+    return rows
+
+
+def _sandstone(paths: list[Path], data: Path, bands: pd.Series) -> list[dict]:
+    """Triaxial peaks beside the line of Table 1, plane strain peaks above it."""
+    chosen = [run.folder for run in find_runs(paths) if run.test in ("triaxial", "plane_strain")]
+    if not chosen:
+        return []
+    far = errors(chosen, data)
+    known = far[(far["figure"] == "10") & (far["origin"] == "experiment")]
+    rows = []
+    for row in strength(chosen, data).itertuples():
+        own = known[[row.case.startswith(f"{name}_p") for name in known["case"]]]
+        measured = NOT_DIGITISED.removeprefix("experiment: ")
+        if len(own):
+            measured = f"Fig. 10, rms difference {own['rms_percent'].iloc[0]:.1f} %"
+        entry = {
+            "case": row.case,
+            "quantity": "strength (first peak)",
+            "expected": f"{row.table_1_line_MPa:.1f} MPa (closed form of Table 1)",
+            "measured": measured,
+            "computed": f"{row.strength_MPa:.1f} MPa" if not row.note else row.note,
+        }
+        if row.test == "triaxial":
+            judged = _judged(row.above_line_percent, bands["triaxial_strength"])
+        else:
+            entry["expected"] = f"above {row.table_1_line_MPa:.1f} MPa (section 3.2)"
+            judged = _above(row.above_line_percent)
+        rows.append(entry | judged)
+    return rows
+
+
+def _measured(paths: list[Path], data: Path, bands: pd.Series) -> list[dict]:
+    """Table 1's quartzite beside TauTona, a fitted line beside Zigong."""
+    rows = []
+    for row in tautona(paths, data).itertuples() if paths else ():
+        rows.append(
+            {
+                "case": "quartzite of Table 1 and TauTona",
+                "quantity": f"strength at {row.confinement_MPa:g} MPa",
+                "expected": "within the measured range",
+                "measured": f"{row.strength_MPa:.1f} ({row.strength_min_MPa:.1f} to"
+                f" {row.strength_max_MPa:.1f}) MPa",
+                "computed": f"{row.table_1_line_MPa:.1f} MPa",
+                "difference": f"{row.difference_percent:+.1f} %",
+                "band": "range of the tests",
+                "verdict": HOLDS if row.within_range == "yes" else FAILS,
+            }
+        )
+    line = fitted_line(data)
+    rows.append(
+        {
+            "case": "line fitted to Zigong sandstone",
+            "quantity": "strength of a point left out",
+            "expected": "-",
+            "measured": "8 means, 10 to 80 MPa",
+            "computed": f"{line.q:.1f} MPa + {line.n:.2f} σ₃",
+            **_judged(100.0 * line.left_out_rms, bands["left_out_strength"], "rms "),
+        }
+    )
+    return rows
+
+
+def _quality(paths: list[Path], bands: pd.Series) -> list[dict]:
+    """Worst energy residual and kinetic share of all runs."""
+    rows = []
+    for key, name in (
+        ("energy_residual", "energy residual over external work"),
+        ("kinetic_ratio_at_peak", "kinetic over internal energy at peak"),
+    ):
+        values = {run.name: run.summary.get(key) for run in find_runs(paths)
+                  if run.test in ("triaxial", "plane_strain", "single_element")}  # fmt: skip
+        values = {name: abs(value) for name, value in values.items() if value is not None}
+        if not values:
+            continue
+        worst = max(values, key=values.get)
+        rows.append(
+            {
+                "case": f"worst of {len(values)} runs: {worst}",
+                "quantity": name,
+                "expected": "0",
+                "measured": "-",
+                "computed": f"{values[worst]:.1e}",
+                "difference": f"{values[worst]:.1e}",
+                "band": f"{bands[key]:g}",
+                "verdict": HOLDS if values[worst] < bands[key] else FAILS,
+            }
+        )
+    return rows
+
+
+def _judged(percent: float, band: float, prefix: str = "") -> dict:
+    """Difference, band and verdict of a quantity that has a value to meet."""
+    if pd.isna(percent):
+        return {"difference": "-", "band": f"{band:g} %", "verdict": FAILS}
+    digits = 1 if abs(percent) >= 0.1 else 4
+    sign = "" if prefix else "+"
+    return {
+        "difference": f"{prefix}{percent:{sign}.{digits}f} %",
+        "band": f"{band:g} %",
+        "verdict": HOLDS if abs(percent) <= band else FAILS,
+    }
+
+
+def _above(percent: float) -> dict:
+    """The same where the claim is only that the value lies above the line."""
+    if pd.isna(percent):
+        return {"difference": "-", "band": "above", "verdict": OPEN}
+    return {
+        "difference": f"{percent:+.1f} %",
+        "band": "above",
+        "verdict": HOLDS if percent > 0 else FAILS,
+    }

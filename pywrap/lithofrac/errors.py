@@ -1,0 +1,23 @@
+"""What the compiled core may refuse, as a Python exception."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+
+
+class CoreError(RuntimeError):
+    """The core refused a call; the message says why and where."""
+
+
+def checked(call: Callable) -> Callable:
+    """Turn the trailing (code, message) of a face routine into an exception."""
+
+    @wraps(call, assigned=())
+    def wrapper(*args):
+        *results, code, message = call(*args)
+        if code:
+            raise CoreError(message.decode().strip())
+        return results[0] if len(results) == 1 else tuple(results)
+
+    return wrapper

@@ -1,0 +1,142 @@
+"""Single kernels of the core on batches of points: arrays in, arrays out, errors raised.
+
+Arrays have one row per point; (n, 4) tensors are xx, yy, zz, xy; stress is in pascal, tension
+positive, and shear strain is engineering. A `rock` is anything with the SI attributes of
+`lithofrac.config.material.Material`: `young, poisson, density, tensile_strength,
+fracture_energy, table, options`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lithofrac import _core
+from lithofrac.errors import checked
+
+_face = _core.kernels_material
+_principal_axes = checked(_face.principal_axes)
+_rotate_axes = checked(_face.rotate_axes)
+_rock_scales = checked(_face.rock_scales)
+_strength_eval = checked(_face.strength_eval)
+_planes_soften = checked(_face.planes_soften)
+_axes_follow = checked(_face.axes_follow)
+_crack_turn = checked(_face.crack_turn)
+_return_principal = checked(_face.return_principal)
+_point_step = checked(_face.point_step)
+
+table_eval = checked(_face.table_eval)
+"""(values, slopes) of the table (x, y) at the points `at`."""
+
+ACTIVE_PLANES = (
+    "T1", "T2", "T3", "M12", "M13", "M21", "M23", "M31", "M32", "apex", "mixture", "cut",
+)  # fmt: skip
+"""Meaning of the bits of `active`: T tension plane, M Mohr-Coulomb plane (larger, smaller)."""
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Derived constants of a rock: moduli, scale and tolerance [Pa], virgin strength, limit."""
+
+    bulk: float
+    shear: float
+    lame: float
+    strength_scale: float
+    yield_tolerance: float
+    sin_phi: float
+    c_cos_phi: float
+    band_width_limit: float  # [m]
+
+
+def constants_of(rock) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(constants (5,), table (4, k), options (4,)) of a rock, as the core takes them."""
+    constants = np.array(
+        [rock.young, rock.poisson, rock.density, rock.tensile_strength, rock.fracture_energy],
+        dtype=float,
+    )
+    table = np.asfortranarray(rock.table, dtype=float)
+    return constants, table, np.asarray(rock.options, dtype=np.int32)
+
+
+def rock_scales(rock) -> Scales:
+    """Derived constants of a rock; raises `CoreError` on numbers that make no sense."""
+    return Scales(*_rock_scales(*constants_of(rock)))
+
+
+def principal_axes(tensors, equality=0.0, fallback=(1.0, 0.0)):
+    """(centre (n,), radius (n,), axis (n, 2) as cos and sin of 2 theta, tensors put together)."""
+    centre, radius, axis, again = _principal_axes(
+        np.asarray(tensors, dtype=float).T, equality, fallback
+    )
+    return centre, radius, axis.T, again.T
+
+
+def rotate_axes(tensors, axes):
+    """Normal components (n, 3) along the axes, at 90 degrees to them, and along z."""
+    return _rotate_axes(np.asarray(tensors, dtype=float).T, np.asarray(axes, dtype=float).T).T
+
+
+def strength_eval(rock, plastic_strain):
+    """(sin phi, c cos phi [Pa]) at effective plastic strains (n,)."""
+    return _strength_eval(*constants_of(rock), np.atleast_1d(plastic_strain))
+
+
+def planes_soften(rock, areas, strengths, increments, scale=2**0.5):
+    """(band widths [m], softening moduli [Pa], strengths left [Pa]) of triangles, each (n,)."""
+    return _planes_soften(*constants_of(rock), areas, scale, strengths, increments)
+
+
+def axes_follow(stresses, axes):
+    """Strength axes (n, 2) after they have followed the stresses (n, 4)."""
+    return _axes_follow(np.asarray(stresses, dtype=float).T, np.asarray(axes, dtype=float).T).T
+
+
+def crack_turn(damage, axes):
+    """Running sum of eq. 13 (n, 2) over n steps of damage (n, 2) along axes (n, 2)."""
+    return _crack_turn(np.asarray(damage, dtype=float).T, np.asarray(axes, dtype=float).T).T
+
+
+def return_principal(rock, softening, trials, strengths, plastic_strain):
+    """Return principal trial stresses (n, 3) to the yield surface.
+
+    Parameters
+    ----------
+    softening : (n,) H, not positive [Pa]
+    trials, strengths : (n, 3) [Pa], any order
+    plastic_strain : (n,)
+
+    Returns
+    -------
+    plastic_strain (n,), inelastic strain (n, 3), its Mohr-Coulomb part (n, 3), active (n,),
+    code (n,)
+    """
+    ep_eff, dep, dep_compressive, active, codes = _return_principal(
+        *constants_of(rock),
+        softening,
+        np.asarray(trials, dtype=float).T,
+        np.asarray(strengths, dtype=float).T,
+        plastic_strain,
+    )
+    return ep_eff, dep.T, dep_compressive.T, active, codes
+
+
+def point_step(rock, softening, strain, stress, ep_eff, ft, opening, axis, crack):
+    """Strain a batch of points by one increment each.
+
+    Parameters
+    ----------
+    softening : (n,) H, not positive [Pa]
+    strain : (n, 4) increments
+    stress (n, 4), ep_eff (n,), ft (n, 3), opening (n, 3), axis (n, 2), crack (n, 2) : the state
+
+    Returns
+    -------
+    The six arrays of the state after the step, inelastic strain increments (n, 4), their
+    Mohr-Coulomb part (n, 4), active (n,), code (n,).
+    """
+    state = [np.asarray(part, dtype=float).T for part in (stress, ep_eff, ft, opening, axis, crack)]
+    results = _point_step(
+        *constants_of(rock), softening, np.asarray(strain, dtype=float).T, *state
+    )
+    return tuple(result.T for result in results)

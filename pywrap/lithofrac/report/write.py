@@ -1,0 +1,76 @@
+"""What `lithofrac report OUT_DIR --out FILE` does."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from lithofrac.data import DataError
+from lithofrac.report.blocks import fill, has_blocks
+from lithofrac.report.markdown import to_html, to_markdown
+
+SHEETS = Path("reports", "sheets")
+TITLES = {
+    "results": "Results",
+    "errors": "Distance from digitised curves",
+    "run_time": "Run time and energy error",
+}  # tables of the whole report, in order; the others stand in the sheets
+
+
+def write_report(out_dir: Path, file: Path, sheets: Path = SHEETS) -> None:
+    """Write Markdown, or a web page when `file` ends in `.html`.
+
+    A file that is there and has marked blocks (README.md, a sheet) gets its tables refreshed in
+    place and keeps the rest. Otherwise a file named like a sheet becomes that sheet, filled, and
+    any other name becomes the whole report: results, all sheets, costs.
+
+    Parameters
+    ----------
+    out_dir : folder of the pipeline; tables are read from `tables/` in it
+    file : what to write; written whole or not at all
+    sheets : folder of the V&V sheets
+
+    Raises
+    ------
+    DataError
+        When there are no tables, or a block asks for one that is not there.
+    """
+    tables = read_tables(out_dir)
+    old = file.read_text(encoding="utf-8") if file.is_file() else ""
+    sheet = sheets / f"{file.stem}.md"
+    if has_blocks(old) and file.suffix == ".md" and not file.is_relative_to(out_dir):
+        text = fill(old, tables, str(file))
+    elif sheet.is_file():
+        text = fill(sheet.read_text(encoding="utf-8"), tables, str(sheet))
+    else:
+        text = whole_report(tables, sheets)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    part = file.with_name(f".{file.name}.part")
+    part.write_text(to_html(text) if file.suffix == ".html" else text, encoding="utf-8")
+    part.replace(file)
+
+
+def read_tables(out_dir: Path) -> dict[str, pd.DataFrame]:
+    """Tables of a pipeline's folder by name."""
+    paths = sorted((out_dir / "tables").glob("*.csv"))
+    if not paths:
+        raise DataError(f"{out_dir / 'tables'}: holds no .csv, expected tables of a finished suite")
+    tables = {}
+    for path in paths:
+        try:
+            tables[path.stem] = pd.read_csv(path, keep_default_na=False, na_values=[""])
+        except pd.errors.EmptyDataError:
+            tables[path.stem] = pd.DataFrame()
+    return tables
+
+
+def whole_report(tables: dict[str, pd.DataFrame], sheets: Path) -> str:
+    """Results first, then every sheet, then costs."""
+    parts = ["# lithofrac: report of the suite\n"]
+    shown = [name for name in TITLES if name in tables]
+    for name in shown:
+        if name == "run_time":
+            for path in sorted(sheets.glob("*.md")):
+                text = fill(path.read_text(encoding="utf-8"), tables, str(path))
+                parts.append(text.replace("\n## ", "\n### ").replace("# ", "## ", 1))
+        parts.append(f"## {TITLES[name]}\n\n{to_markdown(tables[name])}")
+    return "\n".join(parts)

@@ -1,0 +1,62 @@
+"""Verdicts against bands that are fixed beforehand (analysis/results.py)."""
+
+from pathlib import Path
+
+import pytest
+
+from lithofrac.analysis.results import verdicts
+
+pytestmark = pytest.mark.no_core
+ROOT = Path(__file__).parents[3]
+BANDS = ROOT / "reports" / "bands.csv"
+QUARTZITE = ROOT / "configs" / "materials" / "quartzite.yaml"
+
+
+@pytest.fixture
+def table(make_run, make_bench, data_folder):
+    runs = [
+        make_run("sandstone_triaxial_p00", factor=1.029),
+        make_run("sandstone_triaxial_p10", confinement=10.0, factor=0.969),
+        make_run("sandstone_plane_strain_p10", "plane_strain", 10.0, 0.02, factor=1.09),
+        make_run("sandstone_plane_strain_k05_p10", "plane_strain", 10.0, 0.05, peak=False),
+    ]
+    inputs = [BANDS, QUARTZITE, make_bench("sandstone", 0), make_bench("sandstone", 5, 1.002)]
+    return verdicts([*inputs, *(run / "summary.json" for run in runs)], data_folder)
+
+
+def verdict_of(table, case):
+    return table[table["case"] == case].iloc[0]
+
+
+def test_triaxial_peak_holds_inside_three_percent_and_fails_outside(table):
+    assert verdict_of(table, "sandstone_triaxial_p00")["verdict"] == "holds"
+    outside = verdict_of(table, "sandstone_triaxial_p10")
+    assert (outside["difference"], outside["verdict"]) == ("-3.1 %", "does not hold")
+
+
+def test_plane_strain_is_to_lie_above_the_line(table):
+    assert verdict_of(table, "sandstone_plane_strain_p10")["verdict"] == "holds"
+    stiff = verdict_of(table, "sandstone_plane_strain_k05_p10")
+    assert (stiff["computed"], stiff["verdict"]) == ("no peak", "cannot be checked")
+
+
+def test_worst_confinement_of_a_rock_is_the_one_shown(table):
+    row = verdict_of(table, "single element, sandstone, triaxial")
+    assert "strength at 5 MPa" in row["quantity"]
+    assert row["verdict"] == "does not hold"  # 0.2 % against a band of 0.1 %
+
+
+def test_measured_values_stand_beside_the_paper(table):
+    rows = table[table["case"] == "quartzite of Table 1 and TauTona"]
+    assert list(rows["verdict"]) == ["holds"] + 4 * ["does not hold"]
+    assert rows["measured"].iloc[0] == "260.5 (212.7 to 338.9) MPa"
+
+
+def test_worst_energy_residual_is_named_with_its_run(table):
+    row = table[table["quantity"] == "energy residual over external work"].iloc[0]
+    assert row["case"].startswith("worst of 4 runs: ")
+    assert row["verdict"] == "holds"
+
+
+def test_no_row_lacks_a_band(table):
+    assert (table["band"].str.len() > 0).all()
