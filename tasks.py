@@ -306,16 +306,18 @@ def setup():
 # ---------------------------------------------------------------- reproduce, benchmark
 
 
-def reproduce(suite, extra):
-    """The whole suite on all cores, then its report. `extra` goes to snakemake."""
+def reproduce(extra):
+    """A suite on all cores, then its report; `extra` goes to snakemake, but for --suite FILE."""
+    if extra[:1] == ["--suite"]:
+        extra = ["--config", f"suite={' '.join(extra[1:2])}", *extra[2:]]
     setup()
-    snakemake = [BIN / "python", "-m", "snakemake", "--configfile", suite]
-    with stage(f"suite {suite}"):
-        need(*snakemake, "--cores", "all", *extra)
+    snakemake = [BIN / "python", "-m", "snakemake"]
+    with stage("suite"):
+        need(*snakemake, "--cores", "all", "--rerun-incomplete", *extra)
     if {"-n", "--dry-run", "--dryrun"} & set(extra):
         return
     with stage("report"):
-        need(*snakemake, "--report", "out/report.html")
+        need(*snakemake, "--report", "out/report.html", *extra)
     say("read out/report.html or out/report.md")
 
 
@@ -450,10 +452,7 @@ def main(arguments):
     if task == "setup" and not extra:
         setup()
     elif task == "reproduce":
-        suite = "configs/suite.yaml"
-        if extra[:1] == ["--suite"] and len(extra) > 1:
-            suite, extra = extra[1], extra[2:]
-        reproduce(suite, extra)
+        reproduce(extra)
     elif task == "test" and extra in ([], ["--all"]):
         test(everything=bool(extra))
     elif task == "benchmark":

@@ -164,6 +164,24 @@ def test_failed_build_is_not_taken_for_a_finished_one(tasks, monkeypatch):
 
 
 @pytest.mark.no_core
+def test_suite_and_further_arguments_reach_snakemake(tasks, calls, monkeypatch):
+    monkeypatch.setattr(tasks, "setup", lambda: None)
+    tasks.main(["reproduce", "--suite", "configs/suite_quick.yaml", "--keep-going"])
+    suite, report = calls
+    for command in (suite, report):
+        assert command[-3:] == ["--config", "suite=configs/suite_quick.yaml", "--keep-going"]
+    assert suite[3:5] == ["--cores", "all"]
+    assert report[3:5] == ["--report", "out/report.html"]
+
+
+@pytest.mark.no_core
+def test_dry_run_writes_no_report(tasks, calls, monkeypatch):
+    monkeypatch.setattr(tasks, "setup", lambda: None)
+    tasks.main(["reproduce", "-n"])
+    assert len(calls) == 1
+
+
+@pytest.mark.no_core
 def test_run_of_tests_without_counts_has_failed(tasks):
     assert tasks.counted("release") == (0, 1, 0)
 

@@ -107,21 +107,18 @@ contains
       real(wp) :: excess(width), axis(width, 2)
       integer :: lane
 
-      if (state%touched(chunk)) then
-         call check_softened(stress, state%axis(:, :, chunk), state%ft(:, :, chunk), &
-            state%sin_phi(:, chunk), state%c_cos_phi(:, chunk), excess, axis)
-      else
+      if (.not. state%touched(chunk)) then
          call check_virgin(stress, rock, excess)
-      end if
-      if (maxval(excess) > rock%yield_tolerance) then
+         if (maxval(excess) <= rock%yield_tolerance) return
          state%touched(chunk) = .true.
+      end if
+      call check_softened(stress, state%axis(:, :, chunk), state%ft(:, :, chunk), &
+         state%sin_phi(:, chunk), state%c_cos_phi(:, chunk), excess, axis)
+      if (maxval(excess) > rock%yield_tolerance) then
          do lane = 1, chunks%filled(chunk)
-            if (excess(lane) > rock%yield_tolerance) then
+            if (excess(lane) > rock%yield_tolerance) &
                call return_lane(chunks, chunk, lane, rock, fields, dt, state, stress, failure)
-            end if
          end do
-      else if (.not. state%touched(chunk)) then
-         return
       end if
       where (excess <= rock%yield_tolerance)
          state%axis(:, 1, chunk) = axis(:, 1)

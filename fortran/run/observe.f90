@@ -9,7 +9,7 @@ module lithofrac_run_observe
    implicit none
    private
 
-   public :: element_state, energy_now, load_records, n_element_state
+   public :: element_state, energy_now, internal_energy, load_records, n_element_state
 
    integer, parameter :: n_element_state = 17  !! rows of `element_state`
 
@@ -20,23 +20,15 @@ contains
       type(model_type), intent(inout) :: model
       type(ledger_type), intent(out) :: ledger
 
-      real(wp), allocatable :: energy(:, :)
-      integer :: chunk
+      real(wp) :: energy(3)
 
       ledger = model%ledger
-      allocate (energy(3, model%chunks%n_chunks))
-      do chunk = 1, model%chunks%n_chunks
-         energy(:, chunk) = chunk_energy(model, chunk)
-      end do
-      ledger%elastic = sum(energy(1, :))
-      ledger%compressive = sum(energy(2, :))
-      ledger%fracture = sum(energy(3, :))
+      energy = internal_energy(model)
+      ledger%elastic = energy(1)
+      ledger%compressive = energy(2)
+      ledger%fracture = energy(3)
       ledger%kinetic = sum(model%sums(1, :))
-      if (model%step == 0) then
-         model%ledger%initial = ledger%kinetic + ledger%elastic + ledger%compressive &
-            + ledger%fracture
-         ledger%initial = model%ledger%initial
-      else
+      if (model%step > 0) then
          ledger%external = ledger%external &
             + work_before(model%velocities, model%pressures, model%dt, model%fields)
          ledger%damping = ledger%damping + 0.5_wp*model%dt*sum(model%sums(2, :))
@@ -45,6 +37,19 @@ contains
          + ledger%fracture)
       ledger%scale = model%ledger%scale
    end subroutine energy_now
+
+   !> Elastic energy and what the Mohr-Coulomb and the tension planes have dissipated [J].
+   function internal_energy(model) result(energy)
+      type(model_type), intent(in) :: model
+      real(wp) :: energy(3)
+
+      integer :: chunk
+
+      energy = 0.0_wp
+      do chunk = 1, model%chunks%n_chunks
+         energy = energy + chunk_energy(model, chunk)
+      end do
+   end function internal_energy
 
    !> Elastic, compressive and fracture energy of a chunk [J].
    function chunk_energy(model, chunk) result(energy)

@@ -13,6 +13,7 @@ module lithofrac_run_step
    use lithofrac_run_model, only: model_type
    use lithofrac_run_node_update, only: sum_moments, update_affine, update_ground, &
       update_plain
+   use lithofrac_run_observe, only: internal_energy
    use lithofrac_run_settings, only: no_damping, relative_to_affine
    implicit none
    private
@@ -54,6 +55,7 @@ contains
          call move_run(model, run, drift=.false.)
       end do
       model%started = .true.
+      model%ledger%initial = sum(model%sums(1, :)) + sum(internal_energy(model))
       call check_finite(model, status)
    end subroutine start
 
