@@ -29,6 +29,7 @@ module lithofrac_material_fixed_strength
       real(wp) :: g2          !! twice the shear modulus [Pa]
       real(wp) :: lame        !! Lame's first constant [Pa]
       real(wp) :: tolerance   !! on yield functions [Pa]
+      real(wp) :: noise       !! rounding of a strain increment [-]
       logical :: compression  !! Mohr-Coulomb planes exist
       logical :: total        !! all inelastic strain counts as effective plastic strain
    end type trial_type

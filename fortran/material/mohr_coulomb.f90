@@ -12,7 +12,9 @@ module lithofrac_material_mohr_coulomb
    implicit none
    private
 
-   public :: mobilised_type, mobilise, strength_coefficients, main_plane_yield
+   public :: mobilised_type, mobilise, advance, strength_coefficients, main_plane_yield
+
+   real(wp), parameter :: small_turn = 0.06_wp  !! angle whose ninth power is rounding [rad]
 
    !> Strength and flow at one effective plastic strain.
    type :: mobilised_type
@@ -57,6 +59,52 @@ contains
       now%a_flow = 0.5_wp*(1.0_wp + now%sin_psi)
       now%b_flow = 0.5_wp*(1.0_wp - now%sin_psi)
    end subroutine mobilise
+
+   !> Strength and flow after a small increment of effective plastic strain in one segment.
+   !> The sine and cosine of the old angles are turned: no library call in the hot loop.
+   pure subroutine advance(rock, start, e_start, ep_eff, now)
+      type(rock_type), intent(in) :: rock
+      type(mobilised_type), intent(in) :: start  !! at `e_start`
+      real(wp), intent(in) :: e_start            !! [-]
+      real(wp), intent(in) :: ep_eff             !! [-], `e_start` or more
+      type(mobilised_type), intent(out) :: now
+
+      real(wp) :: past, turn_phi, turn_psi
+
+      past = ep_eff - e_start
+      turn_phi = start%phi_slope*past
+      turn_psi = start%psi_slope*past
+      if (max(abs(turn_phi), abs(turn_psi)) > small_turn .or. ep_eff > start%knot) then
+         call mobilise(rock, ep_eff, now)
+         return
+      end if
+      now = start
+      now%c = start%c + start%c_slope*past
+      call turn(turn_phi, now%sin_phi, now%cos_phi)
+      call turn(turn_psi, now%sin_psi, now%cos_psi)
+      now%k = now%c*now%cos_phi
+      now%a = 0.5_wp*(1.0_wp + now%sin_phi)
+      now%b = 0.5_wp*(1.0_wp - now%sin_phi)
+      now%a_flow = 0.5_wp*(1.0_wp + now%sin_psi)
+      now%b_flow = 0.5_wp*(1.0_wp - now%sin_psi)
+   end subroutine advance
+
+   !> Sine and cosine of an angle that grows by `by`, at most `small_turn`.
+   pure subroutine turn(by, sine, cosine)
+      real(wp), intent(in) :: by  !! [rad]
+      real(wp), intent(inout) :: sine, cosine
+
+      real(wp), parameter :: series(2:8) = [-1.0_wp/2.0_wp, -1.0_wp/6.0_wp, 1.0_wp/24.0_wp, &
+         1.0_wp/120.0_wp, -1.0_wp/720.0_wp, -1.0_wp/5040.0_wp, 1.0_wp/40320.0_wp]
+      real(wp) :: cos_by, old, q, sin_by
+
+      q = by*by
+      sin_by = by*(1.0_wp + q*(series(3) + q*(series(5) + q*series(7))))
+      cos_by = 1.0_wp + q*(series(2) + q*(series(4) + q*(series(6) + q*series(8))))
+      old = sine
+      sine = old*cos_by + cosine*sin_by
+      cosine = cosine*cos_by - old*sin_by
+   end subroutine turn
 
    !> sin(phi) and c cos(phi) [Pa]: all that a yield check needs.
    pure subroutine strength_coefficients(rock, ep_eff, sin_phi, c_cos_phi)

@@ -19,7 +19,7 @@ module lithofrac_material_return_map
       return_to_set, trial_type
    use lithofrac_material_flow_split, only: least_flow_at_apex, least_flow_of_equal_maxima, &
       least_flow_of_equal_minima
-   use lithofrac_material_mohr_coulomb, only: main_plane_yield, mobilise, mobilised_type
+   use lithofrac_material_mohr_coulomb, only: advance, main_plane_yield, mobilise, mobilised_type
    use lithofrac_material_rock, only: rock_type
    use lithofrac_material_tension_planes, only: softened_strength
    implicit none
@@ -30,6 +30,7 @@ module lithofrac_material_return_map
    integer, parameter :: apex_bit = 9      !! all six Mohr-Coulomb planes
    integer, parameter :: mixture_bit = 10  !! two sets that share their stress
 
+   real(wp), parameter :: third = 1.0_wp/3.0_wp
    real(wp), parameter :: two_thirds = 2.0_wp/3.0_wp
    real(wp), parameter :: working_tolerance = 0.5_wp  !! of the yield tolerance
    real(wp), parameter :: tie_tolerance = 1.0e-2_wp   !! of the yield tolerance
@@ -77,6 +78,8 @@ contains
       sorted%lame = rock%lame
       sorted%tolerance = max(working_tolerance*rock%yield_tolerance, &
          8.0_wp*epsilon(1.0_wp)*max(abs(sorted%t(1)), abs(sorted%t(3))))
+      sorted%noise = 2.0_wp*epsilon(1.0_wp)*(ep_eff &
+         + (abs(sorted%t(1)) + abs(sorted%t(3)) + rock%strength_scale)/sorted%g2)
       sorted%compression = rock%compression
       sorted%total = rock%total_hardening
       opens = any(sorted%t - sorted%ft > rock%yield_tolerance)
@@ -117,7 +120,7 @@ contains
 
       type(mobilised_type) :: now
       integer :: trip
-      real(wp) :: e, f, f_slope, g, g_slope, k_slope, norm, product, stiff, stiff_slope, step, lambda
+      real(wp) :: e, f_slope, g, g_slope, give, k_slope, norm, product, stiff, stiff_slope, step, lambda
 
       found = .false.
       now = start
@@ -125,23 +128,23 @@ contains
       stiff = 0.5_wp*trial%g2 + trial%lame
       do trip = 1, max_newton
          product = now%sin_phi*now%sin_psi
-         norm = sqrt((1.0_wp + now%sin_psi**2)/3.0_wp)
-         f = now%a*trial%t(1) - now%b*trial%t(3) - now%k
-         lambda = f/(0.5_wp*trial%g2 + stiff*product)
+         norm = sqrt(third*(1.0_wp + now%sin_psi**2))
+         give = 1.0_wp/(0.5_wp*trial%g2 + stiff*product)
+         lambda = (now%a*trial%t(1) - now%b*trial%t(3) - now%k)*give
          g = norm*lambda
-         if (abs(e - e_old - g) <= 1.0e-13_wp*g + 2.0_wp*epsilon(e)*e) exit
+         if (abs(e - e_old - g) <= 1.0e-13_wp*g + trial%noise) exit
          if (trip == max_newton) return
          k_slope = now%c_slope*now%cos_phi - now%c*now%sin_phi*now%phi_slope
          f_slope = 0.5_wp*(trial%t(1) + trial%t(3))*now%cos_phi*now%phi_slope - k_slope
          stiff_slope = stiff*(now%cos_phi*now%phi_slope*now%sin_psi &
             + now%sin_phi*now%cos_psi*now%psi_slope)
-         g_slope = norm*(f_slope - lambda*stiff_slope)/(0.5_wp*trial%g2 + stiff*product) &
-            + lambda*now%sin_psi*now%cos_psi*now%psi_slope/(3.0_wp*norm)
+         g_slope = norm*give*(f_slope - lambda*stiff_slope) &
+            + third*lambda*now%sin_psi*now%cos_psi*now%psi_slope/norm
          if (.not. g_slope < 1.0_wp) return
          step = (e_old + g - e)/(1.0_wp - g_slope)
          e = e + step
          if (.not. (e >= e_old .and. e <= start%knot)) return
-         call mobilise(rock, e, now)
+         call advance(rock, start, e_old, e, now)
       end do
       best%e = e
       best%flow%tension = 0
@@ -176,14 +179,14 @@ contains
       call sample(rock, trial, e_old, prescribed, low, knot, found)
       if (.not. found) return
       best = low
-      if (converged(low, e_old)) return
+      if (converged(trial, low, e_old)) return
       high = low
       do
          ! The predicted strain first, the end of the segment if that lies below the root.
-         high%e = min(low%e - 2.0_wp*low%f, knot)
+         high%e = min(low%e - low%f, knot)
          call sample(rock, trial, e_old, prescribed, high, next_knot, found)
          if (.not. found) return
-         if (high%f >= 0.0_wp) exit
+         if (high%f >= 0.0_wp .or. converged(trial, high, e_old)) exit
          if (high%e < knot .and. knot < huge(knot)) then
             low = high
             high%e = knot
@@ -214,7 +217,7 @@ contains
       mixed = .false.
       found = .true.
       best = high
-      if (converged(high, e_old)) return
+      if (converged(trial, high, e_old)) return
       f_low = low%f
       f_high = high%f
       side = 0
@@ -229,7 +232,7 @@ contains
          if (.not. (best%e > low%e .and. best%e < high%e)) best%e = 0.5_wp*(low%e + high%e)
          call sample(rock, trial, e_old, prescribed, best, knot, found)
          if (.not. found) return
-         if (converged(best, e_old)) return
+         if (converged(trial, best, e_old)) return
          if (best%f < 0.0_wp) then
             low = best
             f_low = best%f
@@ -285,12 +288,13 @@ contains
    end function increment
 
    !> True if F vanishes to rounding.
-   pure function converged(point, e_old)
+   pure function converged(trial, point, e_old)
+      type(trial_type), intent(in) :: trial
       type(sample_type), intent(in) :: point
       real(wp), intent(in) :: e_old
       logical :: converged
 
-      converged = abs(point%f) <= 1.0e-13_wp*abs(point%e - e_old) + 2.0_wp*epsilon(e_old)*point%e
+      converged = abs(point%f) <= 1.0e-13_wp*(point%e - e_old) + trial%noise
    end function converged
 
    !> Where more planes meet than the set holds, take the smallest Mohr-Coulomb flow.

@@ -3,7 +3,7 @@
 Arrays have one row per point; (n, 4) tensors are xx, yy, zz, xy; stress is in pascal, tension
 positive, and shear strain is engineering. A `rock` is anything with the SI attributes of
 `lithofrac.config.material.Material`: `young, poisson, density, tensile_strength,
-fracture_energy, table, options`.
+fracture_energy, table, options`, or a `PackedRock`.
 """
 
 from __future__ import annotations
@@ -49,14 +49,31 @@ class Scales:
     band_width_limit: float  # [m]
 
 
-def constants_of(rock) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(constants (5,), table (4, k), options (4,)) of a rock, as the core takes them."""
+@dataclass(frozen=True)
+class PackedRock:
+    """The numbers of a rock as the core takes them; saves time when used again and again."""
+
+    constants: np.ndarray  # (5,) E, nu, density, ft, Gf in SI
+    table: np.ndarray  # (4, k) Fortran order: strain, cohesion [Pa], friction, dilation [rad]
+    options: np.ndarray  # (4,) int32: total, explicit, compression, yields
+
+
+def pack(rock) -> PackedRock:
+    """The numbers of a rock, or a `PackedRock` as it is."""
+    if isinstance(rock, PackedRock):
+        return rock
     constants = np.array(
         [rock.young, rock.poisson, rock.density, rock.tensile_strength, rock.fracture_energy],
         dtype=float,
     )
     table = np.asfortranarray(rock.table, dtype=float)
-    return constants, table, np.asarray(rock.options, dtype=np.int32)
+    return PackedRock(constants, table, np.asarray(rock.options, dtype=np.int32))
+
+
+def constants_of(rock) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(constants, table, options) of a rock; see `PackedRock`."""
+    packed = pack(rock)
+    return packed.constants, packed.table, packed.options
 
 
 def rock_scales(rock) -> Scales:
@@ -136,7 +153,5 @@ def point_step(rock, softening, strain, stress, ep_eff, ft, opening, axis, crack
     Mohr-Coulomb part (n, 4), active (n,), code (n,).
     """
     state = [np.asarray(part, dtype=float).T for part in (stress, ep_eff, ft, opening, axis, crack)]
-    results = _point_step(
-        *constants_of(rock), softening, np.asarray(strain, dtype=float).T, *state
-    )
+    results = _point_step(*constants_of(rock), softening, np.asarray(strain, dtype=float).T, *state)
     return tuple(result.T for result in results)
