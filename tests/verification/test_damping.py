@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from models import one_triangle, problem, rectangle
+
 from lithofrac.core import Run
 from lithofrac.problem import Damping
-from models import one_triangle, problem, rectangle
 
 pytestmark = pytest.mark.verification
 STEPS = 1000
