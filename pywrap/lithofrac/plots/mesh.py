@@ -21,7 +21,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     """Mesh of one run, rebuilt boundary conditions drawn on it."""
     run = find_runs(inputs)[0]
     problem = make_problem(load_case(run.folder / "case.yaml"), Mesh.load(run.folder / "mesh.npz"))
-    drawn, axes = style.new_figure(height=5.0)
+    drawn, axes = style.new_figure(height=4.6, width=5.6)
     draw_problem(axes[0, 0], problem)
     handles, labels = axes[0, 0].get_legend_handles_labels()
     single = dict(zip(labels, handles, strict=True))
@@ -128,4 +128,5 @@ def _some(points: np.ndarray) -> np.ndarray:
 
 
 def _spread(count: int) -> np.ndarray:
-    return np.unique(np.linspace(0, count - 1, min(count, ARROWS)).round().astype(int))
+    """At most `ARROWS` of `count` indices, evenly apart."""
+    return np.arange(0, count, max(1, -(-(count - 1) // (ARROWS - 1))))

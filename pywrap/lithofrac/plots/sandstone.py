@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from lithofrac.analysis.bench import Bench, find_bench
 from lithofrac.analysis.mohr_coulomb import peak_line
 from lithofrac.analysis.runs import Run, find_runs
 from lithofrac.analysis.tables import NOT_DIGITISED
@@ -54,11 +55,15 @@ def stress_strain(inputs: list[Path], data: Path) -> Figure:
 
 
 def strength(inputs: list[Path], data: Path) -> Figure:
-    """Fig. 10: strength against confinement, beside the closed form of Table 1."""
+    """Fig. 10: strength against confinement, beside Table 1 and the stiff material point.
+
+    `inputs` holds runs, and curves of the bench in stiff confinement.
+    """
     runs = find_runs(inputs)
     drawn, axes = style.new_figure(height=4.2)
     panel = axes[0, 0]
     draw_line(panel, runs)
+    draw_bench(panel, find_bench(inputs, "stiff_confinement"))
     draw_series(panel, [run for run in runs if run.stiffness == 0.0], "o", style.BLUE,
                 "triaxial, this code")  # fmt: skip
     stiff = sorted({run.stiffness for run in runs if run.stiffness > 0.0})
@@ -113,6 +118,14 @@ def draw_line(axes: Axes, runs: list[Run]) -> None:
     confinement = np.linspace(0.0, max(run.confinement_MPa for run in runs) or 1.0, 61)
     line = peak_line(runs[0].rock.table, 1e6 * confinement) / 1e6
     axes.plot(confinement, line, color=style.GREY, label="Table 1, closed form")
+
+
+def draw_bench(axes: Axes, curves: list[Bench]) -> None:
+    """Draw first peaks of the material point in stiff confinement."""
+    peaks = [(curve.confinement_MPa, curve.peak.stress) for curve in curves if curve.peak]
+    if peaks:
+        label = f"material point, k = {DEFAULT_STIFFNESS:g} E"
+        axes.plot(*zip(*peaks, strict=True), "--", color=style.GREY, label=label)
 
 
 def draw_series(axes: Axes, runs: list[Run], marker: str, colour: str, label: str) -> None:
