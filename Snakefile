@@ -47,7 +47,6 @@ wildcard_constraints:
 rule all:
     input:
         f"{OUT}/report.md",
-        f"{OUT}/figures/sandstone.png",
         expand(f"{OUT}/figures/single_element_{{rock}}.svg", rock=ROCKS),
         expand(f"{OUT}/figures/mesh_{{case}}.svg", case=SCENES),
 
@@ -180,6 +179,7 @@ rule table:
 rule summary:
     input:
         expand(f"{OUT}/tables/{{table}}.csv", table=TABLES),
+        rules.plot_suite.output,
         Path("reports/sheets").glob("*.md"),
     output:
         markdown=f"{OUT}/report.md",

@@ -78,6 +78,7 @@ def make_run(tmp_path, sandstone):
             "status": "completed", "case": name, "elements": 1200, "nodes": 660, "steps": 100000,
             "wall_seconds": 6.0, "core_seconds": 5.5, "element_steps_per_core_second": 2.2e7,
             "energy_residual": 1e-9, "kinetic_ratio_at_peak": 1e-3,
+            "version": "0.1.0", "commit": "0123456789ab",
         }  # fmt: skip
         (folder / "summary.json").write_text(json.dumps(summary))
         case = {

@@ -161,13 +161,17 @@ def _judged(percent: float, band: float, prefix: str = "") -> dict:
     """Difference, band and verdict of a quantity that has a value to meet."""
     if pd.isna(percent):
         return {"difference": "-", "band": f"{band:g} %", "verdict": FAILS}
-    digits = 1 if abs(percent) >= 0.1 else 4
-    sign = "" if prefix else "+"
     return {
-        "difference": f"{prefix}{percent:{sign}.{digits}f} %",
+        "difference": f"{prefix}{_percent(percent, signed=not prefix)}",
         "band": f"{band:g} %",
         "verdict": HOLDS if abs(percent) <= band else FAILS,
     }
+
+
+def _percent(value: float, signed: bool) -> str:
+    if abs(value) < 1e-4:
+        return "below 0.0001 %"
+    return f"{value:{'+' if signed else ''}.{1 if abs(value) >= 0.1 else 4}f} %"
 
 
 def _above(percent: float) -> dict:

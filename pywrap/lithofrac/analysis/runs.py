@@ -64,6 +64,11 @@ class Run:
         return self.case["scene"]["kind"]
 
     @property
+    def axisymmetric(self) -> bool:
+        """Whether forces and energies are per radian instead of per metre of depth."""
+        return self.test == "triaxial" or bool(self.case["scene"].get("axisymmetric", False))
+
+    @property
     def confinement_MPa(self) -> float:
         """Lateral pressure at the start of axial loading."""
         return float(self.case["loading"].get("confinement_MPa", 0.0))

@@ -32,6 +32,8 @@ SUMMARY = (
     "element_steps_per_core_second",
     "energy_residual",
     "kinetic_ratio_at_peak",
+    "version",
+    "commit",
 )
 
 
