@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -53,6 +52,5 @@ def figure(inputs: list[Path], data: Path) -> Figure:
 
 def draw_column(axes: Axes, curve: Bench, column: str, colour) -> None:
     """Draw one quantity of one curve against axial strain [%]."""
-    table = pd.concat([curve.curve, curve.evolution()], axis=1)
-    table["volumetric_percent"] = 100.0 * table["volumetric_strain"]
+    table = curve.curve.assign(volumetric_percent=100.0 * curve.curve["volumetric_strain"])
     axes.plot(100.0 * table["axial_strain"], table[column], color=colour)
