@@ -153,7 +153,5 @@ def point_step(rock, softening, strain, stress, ep_eff, ft, opening, axis, crack
     Mohr-Coulomb part (n, 4), active (n,), code (n,).
     """
     state = [np.asarray(part, dtype=float).T for part in (stress, ep_eff, ft, opening, axis, crack)]
-    results = _point_step(
-        *constants_of(rock), softening, np.asarray(strain, dtype=float).T, *state
-    )
+    results = _point_step(*constants_of(rock), softening, np.asarray(strain, dtype=float).T, *state)
     return tuple(result.T for result in results)

@@ -134,7 +134,8 @@ class _Session:
         self.recorder.restore(arrays)
         self.core_before, self.wall_before = arrays["clocks"]
         self.frames = [
-            (float(moment), f"fields/frame_{i:04d}.vtu") for i, moment in enumerate(arrays["frames"])
+            (float(moment), f"fields/frame_{i:04d}.vtu")
+            for i, moment in enumerate(arrays["frames"])
         ]
         self.first_step = self.run.step
 
@@ -223,9 +224,7 @@ class _Session:
             "energy": {name: _finite(value) for name, value in energy.iloc[-1].items()},
             "energy_residual": _residual(energy),
             **_peak(history, energy),
-            "max_plastic_strain": _finite(
-                run.elements(np.arange(elements)).plastic_strain.max()
-            ),
+            "max_plastic_strain": _finite(run.elements(np.arange(elements)).plastic_strain.max()),
             # without contact and crack insertion these are zero by construction
             "cracks": 0,
             "fragments": 0,

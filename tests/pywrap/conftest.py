@@ -58,7 +58,9 @@ def make_run(tmp_path, sandstone):
                 "volumetric_strain": 2 * lateral - strain,
             }
         ).to_parquet(folder / "history.parquet")
-        work = np.concatenate([[0.0], np.cumsum(0.5 * (stress[1:] + stress[:-1]) * np.diff(strain))])
+        work = np.concatenate(
+            [[0.0], np.cumsum(0.5 * (stress[1:] + stress[:-1]) * np.diff(strain))]
+        )
         elastic = 1e6 * 0.5 * stress**2 / 28e3
         pd.DataFrame(
             {

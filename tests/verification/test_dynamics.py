@@ -42,7 +42,9 @@ def wave_errors(n):
     time = run.step * run.dt
     u, _, mass = run.nodes()
     exact = standing_wave(mesh.nodes, time)
-    displacement = np.sqrt((mass[:, None] * (u - exact) ** 2).sum() / (mass[:, None] * exact**2).sum())
+    displacement = np.sqrt(
+        (mass[:, None] * (u - exact) ** 2).sum() / (mass[:, None] * exact**2).sum()
+    )
     stress = run.elements(np.arange(len(mesh.triangles))).stress[:, 0]
     # CST stress is first order where it is compared point by point inside the element
     corner = standing_stress(mesh.nodes[mesh.triangles[:, 0]], time)

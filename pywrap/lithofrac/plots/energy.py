@@ -37,7 +37,7 @@ def draw_ledger(axes: Axes, run: Run) -> None:
     time = 1e3 * table["time_s"]
     axes.stackplot(
         time,
-        [table[column] for column, _, _ in PARTS],
+        [table[column].abs() for column, _, _ in PARTS],  # damping is booked as negative work
         labels=[label for _, label, _ in PARTS],
         colors=[colour for _, _, colour in PARTS],
         lw=0,

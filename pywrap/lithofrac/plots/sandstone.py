@@ -78,7 +78,8 @@ def strength(inputs: list[Path], data: Path) -> Figure:
             ls="none",
             label=f"{curve.sheet.origin}: {curve.sheet.series}",
         )
-    panel.set(xlabel="confinement [MPa]", ylabel="strength (first peak) [MPa]", ylim=(0, None))
+    panel.set(xlabel="confinement [MPa]", ylabel="strength (first peak) [MPa]")
+    panel.set_ylim(0, 1.05 * panel.get_ylim()[1])
     panel.legend(loc="upper left")
     if not any(curve.sheet.origin == "experiment" for curve in digitised):
         style.badge(panel, NOT_DIGITISED)

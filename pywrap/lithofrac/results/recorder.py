@@ -45,9 +45,7 @@ class Recorder:
         self.history.append(np.concatenate([[run.step, time], run.loads().ravel()]))
         scale = max(abs(ledger.external), abs(ledger.initial), ledger.internal)
         entries = [getattr(ledger, name) for name in ENERGY]
-        self.energy.append(
-            np.array([time, *entries, ledger.residual * scale, ledger.residual])
-        )
+        self.energy.append(np.array([time, *entries, ledger.residual * scale, ledger.residual]))
         if run.problem.probes:
             state = run.elements(np.fromiter(run.problem.probes.values(), int))
             rows = np.column_stack(
