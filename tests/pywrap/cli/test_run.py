@@ -9,6 +9,7 @@ import time
 
 import pandas as pd
 import pytest
+
 from lithofrac import cli
 from lithofrac.cli import main
 from lithofrac.config import find_case, load_case

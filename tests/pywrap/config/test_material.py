@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from lithofrac.config import ConfigError, Material
 
 pytestmark = pytest.mark.no_core
