@@ -313,7 +313,7 @@ def reproduce(extra):
     setup()
     snakemake = [BIN / "python", "-m", "snakemake"]
     with stage("suite"):
-        need(*snakemake, "--cores", "all", "--rerun-incomplete", *extra)
+        need(*snakemake, "--cores", "all", "--rerun-incomplete", "--show-failed-logs", *extra)
     if {"-n", "--dry-run", "--dryrun"} & set(extra):
         return
     with stage("report"):

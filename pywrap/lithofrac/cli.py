@@ -6,6 +6,7 @@ by the command that needs them.
 
 from __future__ import annotations
 
+import math
 import signal
 import subprocess
 import sys
@@ -93,7 +94,7 @@ def run(options: Namespace) -> int:
     name = Path(options.case).stem if options.case.endswith((".yaml", ".yml")) else options.case
     _prepare(options.out, case, made, options.resume)
     progress = Progress(name)
-    signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
+    before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
     try:
         summary = simulate(
             problem,
@@ -111,6 +112,7 @@ def run(options: Namespace) -> int:
         return INTERRUPTED
     finally:
         progress.close()
+        signal.signal(signal.SIGTERM, before)
     if not options.quiet:
         _print_summary(name, summary, options.out)
     return GOOD
@@ -139,7 +141,12 @@ def point(options: Namespace) -> int:
     from lithofrac.config.material import Material
 
     rock = Material.load(options.rock)
-    more = {} if options.end_strain is None else {"end_strain": options.end_strain}
+    if options.end_strain is not None and not 0.0 < options.end_strain < math.inf:
+        raise ConfigError(f"--end-strain {options.end_strain:g}: expected a number above 0")
+    if options.stiffness is not None and not 0.0 <= options.stiffness < math.inf:
+        raise ConfigError(f"--stiffness {options.stiffness:g}: expected a number not below 0")
+    given = {"end_strain": options.end_strain, "stiffness": options.stiffness}
+    more = {name: value for name, value in given.items() if value is not None}
     try:
         curve = bench.drive(
             rock, test=options.test, confinement_MPa=options.confinement_MPa, **more
@@ -212,7 +219,6 @@ def _print_plan(name: str, case: Case) -> None:
     problem = make_problem(case, made)
     expected = plan(problem)
     width = float(case.material.band_width_of(made.areas().max()))
-    limit = case.material.band_width_limit
     used = [feature for feature, uses in expected["uses"].items() if uses]
     unused = [feature for feature, uses in expected["uses"].items() if not uses]
     rows = [
@@ -220,10 +226,7 @@ def _print_plan(name: str, case: Case) -> None:
         ("scene", f"{case.scene.kind}, mesh {case.mesh.seed}"),
         ("material", case.material.title or "without a title"),
         ("elements", f"{expected['elements']} on {expected['nodes']} nodes"),
-        (
-            "crack band",
-            f"{1e3 * width:.3g} mm, limit {1e3 * case.material.band_width_limit:.4g} mm",
-        ),
+        ("crack band", f"{1e3 * width:.3g} mm, {_limit(case)}"),
         ("time step", f"{expected['time_step_s']:.4g} s"),
         ("steps", f"{expected['steps']} to {1e3 * problem.end_time:.4g} ms"),
         ("expected run", f"{expected['expected_seconds']:.1f} s on one core"),
@@ -234,12 +237,19 @@ def _print_plan(name: str, case: Case) -> None:
         print(f"{key:<14}{value}")
 
 
+def _limit(case: Case) -> str:
+    if case.material.elastic:
+        return "no limit"
+    return f"limit {1e3 * case.material.band_width_limit:.4g} mm"
+
+
 def _print_summary(name: str, summary: dict, out: Path) -> None:
     peak = summary.get("peak_stress_MPa")
     said = "no axial measure" if peak is None else f"largest axial stress {peak:.4g} MPa"
     print(
         f"{name}: {summary['status']}, {summary['steps']} steps in "
-        f"{summary['wall_seconds']:.1f} s, {said}, energy residual {summary['energy_residual']:.1e}; results in {out}"
+        f"{summary['wall_seconds']:.1f} s, {said}, "
+        f"energy residual {summary['energy_residual']:.1e}; results in {out}"
     )
 
 

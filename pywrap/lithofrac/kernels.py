@@ -29,6 +29,12 @@ _point_step = checked(_face.point_step)
 table_eval = checked(_face.table_eval)
 """(values, slopes) of the table (x, y) at the points `at`."""
 
+element_path = checked(_core.kernels_mechanics.element_path)
+"""(states, forces, dissipated, critical step) of a triangle led through displacements."""
+
+bare_elastic = checked(_core.kernels_mechanics.bare_elastic)
+"""Positions after bare elastic steps of a free body: the yardstick of the benchmark."""
+
 ACTIVE_PLANES = (
     "T1", "T2", "T3", "M12", "M13", "M21", "M23", "M31", "M32", "apex", "mixture", "cut",
 )  # fmt: skip
@@ -153,7 +159,5 @@ def point_step(rock, softening, strain, stress, ep_eff, ft, opening, axis, crack
     Mohr-Coulomb part (n, 4), active (n,), code (n,).
     """
     state = [np.asarray(part, dtype=float).T for part in (stress, ep_eff, ft, opening, axis, crack)]
-    results = _point_step(
-        *constants_of(rock), softening, np.asarray(strain, dtype=float).T, *state
-    )
+    results = _point_step(*constants_of(rock), softening, np.asarray(strain, dtype=float).T, *state)
     return tuple(result.T for result in results)

@@ -69,7 +69,8 @@ def simulate(
     out : results folder; made if it is not there
     threads : threads of the core; results are the same bits for any number
     resume : go on from the newest good checkpoint in `out`
-    progress : called at every record with step, steps, time_s, percent, rate, residual, seconds_left
+    progress : called at every record with step, steps, time_s, percent, rate, residual and
+        seconds_left
     meta : entries for the summary (case, commit)
 
     Returns
@@ -134,7 +135,8 @@ class _Session:
         self.recorder.restore(arrays)
         self.core_before, self.wall_before = arrays["clocks"]
         self.frames = [
-            (float(moment), f"fields/frame_{i:04d}.vtu") for i, moment in enumerate(arrays["frames"])
+            (float(moment), f"fields/frame_{i:04d}.vtu")
+            for i, moment in enumerate(arrays["frames"])
         ]
         self.first_step = self.run.step
 
@@ -223,9 +225,7 @@ class _Session:
             "energy": {name: _finite(value) for name, value in energy.iloc[-1].items()},
             "energy_residual": _residual(energy),
             **_peak(history, energy),
-            "max_plastic_strain": _finite(
-                run.elements(np.arange(elements)).plastic_strain.max()
-            ),
+            "max_plastic_strain": _finite(run.elements(np.arange(elements)).plastic_strain.max()),
             # without contact and crack insertion these are zero by construction
             "cracks": 0,
             "fragments": 0,

@@ -80,9 +80,7 @@ def test_closed_cycle_of_strain_and_rotation_returns_to_no_stress():
     )
     path = []
     for (exx, eyy, exy), turn in zip(strain, np.pi * np.sin(2 * np.pi * t), strict=True):
-        path.append(
-            displacements(TRIANGLE, rotation(turn) @ [[1 + exx, exy], [exy, 1 + eyy]])
-        )
+        path.append(displacements(TRIANGLE, rotation(turn) @ [[1 + exx, exy], [exy, 1 + eyy]]))
     state, *_ = element_path(Elastic(), TRIANGLE, path)
     assert abs(state.stress).max() > 1e-3 * Elastic().young
     assert abs(state.stress[-1]).max() < ROUNDING * Elastic().young

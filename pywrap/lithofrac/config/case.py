@@ -159,6 +159,10 @@ def _loading_problems(scene: Scene, loading: Loading) -> list[str]:
             f"loading.lateral_stiffness_over_young = {loading.lateral_stiffness_over_young:g}: "
             f"the scene {kind} has no lateral platens, expected 0"
         )
+    if loading.sense == "stretch" and loading.confinement_MPa > 0:
+        problems.append(
+            "loading.sense = stretch: the ends cannot follow a confinement first, expected shorten"
+        )
     return problems
 
 

@@ -89,8 +89,8 @@ def _expected(kind: str, context: dict) -> str:
         "greater_than_equal": ("a number not below", "ge"),
         "less_than": ("a number below", "lt"),
         "less_than_equal": ("a number not above", "le"),
-        "too_short": ("a list of at least this many items:", "min_length"),
-        "too_long": ("a list of at most this many items:", "max_length"),
+        "too_short": ("at least this many items:", "min_length"),
+        "too_long": ("at most this many items:", "max_length"),
         "string_too_short": ("a text of at least this many letters:", "min_length"),
         "literal_error": ("one of", "expected"),
     }

@@ -67,8 +67,15 @@ def mesh_from(geo: str) -> RawMesh:
         if done.returncode != 0 or not (folder / "scene.msh").exists():
             said = (done.stderr.strip() or done.stdout.strip() or "no message").splitlines()
             raise MeshError(f"gmsh gave no mesh: {said[-1]}")
+        return _raw(_read(folder / "scene.msh"))
+
+
+def _read(path: Path) -> meshio.Mesh:
+    try:
         with contextlib.redirect_stdout(io.StringIO()):  # meshio prints empty lines
-            return _raw(meshio.read(folder / "scene.msh"))
+            return meshio.read(path)
+    except (ValueError, meshio.ReadError) as error:  # no elements at all
+        raise MeshError(f"gmsh gave no mesh that can be read: {error}") from None
 
 
 def _gmsh() -> list[str]:

@@ -1,0 +1,75 @@
+"""Help, version, start-up time and exit codes of the words themselves (pywrap/lithofrac/cli.py)."""
+
+import subprocess
+import sys
+
+import pytest
+
+import lithofrac
+from lithofrac.cli import COMMANDS, main
+
+pytestmark = pytest.mark.no_core
+
+
+def words(*arguments) -> subprocess.CompletedProcess:
+    return subprocess.run(
+        [sys.executable, "-m", "lithofrac", *arguments], capture_output=True, text=True
+    )
+
+
+def test_help_fits_a_screen():
+    said = words("--help").stdout.splitlines()
+    assert len(said) <= 24
+    assert max(map(len, said)) <= 80
+    assert any(line.startswith("example: lithofrac run") for line in said)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_each_command_shows_an_example(command, capsys):
+    with pytest.raises(SystemExit) as left:
+        main([command, "--help"])
+    assert left.value.code == 0
+    assert f"example: lithofrac {command}" in capsys.readouterr().out
+
+
+def test_version():
+    done = words("--version")
+    assert (done.returncode, done.stdout) == (0, f"lithofrac {lithofrac.__version__}\n")
+
+
+@pytest.mark.parametrize("arguments", [[], ["rum"], ["run"], ["run", "kirsch", "--threads", "0"]])
+def test_wrong_words_exit_with_2_and_no_traceback(arguments):
+    done = words(*arguments)
+    assert done.returncode == 2
+    assert done.stderr.splitlines()[-1].startswith("lithofrac")
+    assert "Traceback" not in done.stderr
+
+
+def test_the_package_and_its_words_are_imported_quickly():
+    # least of three: a busy machine is not what is measured
+    script = (
+        "import time; t = time.perf_counter(); import lithofrac.cli;print(time.perf_counter() - t)"
+    )
+    times = [
+        float(subprocess.run([sys.executable, "-c", script], capture_output=True, text=True).stdout)
+        for _ in range(3)
+    ]
+    assert min(times) < 0.3
+
+
+def test_check_of_the_suite_names_every_case(capsys):
+    assert main(["check", "--suite", "configs/suite_quick.yaml"]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[0].startswith("single_element_quartzite: ")
+    assert said[-1] == f"{len(said) - 1} cases are right"
+
+
+def test_a_mesh_is_saved_where_it_is_wanted(tmp_path, capsys):
+    from lithofrac.problem import Mesh
+
+    out = tmp_path / "new" / "mesh.npz"
+    assert main(["mesh", "kirsch", "--out", str(out), "--seed", "2"]) == 0
+    made = Mesh.load(out)
+    assert capsys.readouterr().out == (
+        f"{out}: {len(made.triangles)} elements, {len(made.nodes)} nodes\n"
+    )

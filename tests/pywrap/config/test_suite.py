@@ -1,0 +1,85 @@
+"""Suites (pywrap/lithofrac/config/suite.py and configs/suite*.yaml)."""
+
+from pathlib import Path
+
+import pytest
+
+from lithofrac.config import ConfigError, find_case, load_suite
+
+pytestmark = pytest.mark.no_core
+
+SUITE, QUICK = Path("configs/suite.yaml"), Path("configs/suite_quick.yaml")
+CONFINEMENTS = (0, 5, 10, 20, 30)
+
+
+@pytest.mark.parametrize("path", [SUITE, QUICK], ids=lambda path: path.stem)
+def test_every_case_is_right(path):
+    suite = load_suite(path)
+    for name in suite.cases:
+        assert suite.case(name).title
+
+
+def test_the_suite_has_the_sandstone_at_all_confinements():
+    suite = load_suite(SUITE)
+    for p in CONFINEMENTS:
+        assert suite.case(f"sandstone_triaxial_p{p:02d}").loading.confinement == p * 1e6
+        for tag, k in (("", 0.02), ("k01_", 0.01), ("k05_", 0.05)):
+            loading = suite.case(f"sandstone_plane_strain_{tag}p{p:02d}").loading
+            assert (loading.confinement, loading.lateral_stiffness_over_young) == (p * 1e6, k)
+
+
+def test_the_quick_suite_has_every_scene_of_the_suite():
+    def kinds(path):
+        suite = load_suite(path)
+        return {suite.case(name).scene.kind for name in suite.cases}
+
+    assert kinds(QUICK) == kinds(SUITE)
+    assert set(load_suite(QUICK).cases) <= set(load_suite(SUITE).cases)
+
+
+def test_a_seed_after_the_name_is_another_realisation():
+    assert find_case("kirsch@seed3").mesh.seed == 3
+    assert find_case("kirsch").mesh.seed == 1
+
+
+def test_a_case_is_found_by_name_or_by_file():
+    by_name = find_case("sandstone_triaxial_p05")
+    by_file = find_case(
+        "configs/cases/sandstone_triaxial.yaml", None, {"loading.confinement_MPa": 5}
+    )
+    assert by_name == by_file
+
+
+def test_the_installed_suite_serves_any_folder(tmp_path, monkeypatch):
+    here = find_case("kirsch")
+    monkeypatch.chdir(tmp_path)
+    assert find_case("kirsch") == here
+
+
+def refusal(path, text, name="a") -> str:
+    path.write_text(text)
+    with pytest.raises(ConfigError) as caught:
+        load_suite(path).case(name)
+    return str(caught.value)
+
+
+def test_mistakes_are_named_with_the_entry(tmp_path):
+    path = tmp_path / "s.yaml"
+    case = Path("configs/cases/kirsch.yaml").resolve()
+    head = "title: t\ncases:\n"
+    assert refusal(path, head + f"  a: {{extends: {case}, set: {{scene.radius: 3}}}}") == (
+        f"{path}: cases.a.set: scene.radius: unknown key, did you mean 'hole_radius_mm'?"
+    )
+    assert refusal(path, head + "  a: {extends: b}") == (
+        f"{path}: cases.a.extends = b: no such file, expected {tmp_path / 'b.yaml'}"
+    )
+    assert refusal(path, head + f"  b: {{extends: {case}}}") == (
+        f"{path}: cases.a: no such case, expected one of: b"
+    )
+    assert refusal(path, head + "  a: {}") == (
+        f"{path}: cases.a.extends: missing key, expected a text"
+    )
+    assert refusal(path, "title: t\ncases: {}") == (
+        f"{path}: cases: expected at least this many items: 1"
+    )
+    assert "cases.a/b" in refusal(path, head + "  a/b: {extends: c}")
