@@ -165,9 +165,7 @@ def test_two_exhausted_planes_share_the_flow_of_an_edge_evenly():
 def test_explicit_coupling_checks_planes_against_the_old_strength(name, n_random):
     rock = packed(name, coupling=EXPLICIT)
     law = Law(rock)
-    softening, trial, ft, e_old = random_returns(
-        law, np.random.default_rng(7), n_random(3000)
-    )
+    softening, trial, ft, e_old = random_returns(law, np.random.default_rng(7), n_random(3000))
     results = kernels.return_principal(rock, softening, trial, ft, e_old)
     assert_consistent(law, softening, trial, ft, e_old, results, checked_strength=ft)
     implicit = kernels.return_principal(packed(name), softening, trial, ft, e_old)
@@ -207,9 +205,7 @@ def test_without_compressive_planes_only_cracks_open():
     rock = packed("quartzite", compression=0)
     law = Law(rock)
     softening, trial, ft, e_old = random_returns(law, np.random.default_rng(9), 2000)
-    e, dep, compressive, active, code = kernels.return_principal(
-        rock, softening, trial, ft, e_old
-    )
+    e, dep, compressive, active, code = kernels.return_principal(rock, softening, trial, ft, e_old)
     assert not code.any()
     assert not compressive.any()
     assert (active < 8).all()
