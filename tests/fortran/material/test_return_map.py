@@ -165,9 +165,7 @@ def test_two_exhausted_planes_share_the_flow_of_an_edge_evenly():
 def test_explicit_coupling_checks_planes_against_the_old_strength(name, n_random):
     rock = packed(name, coupling=EXPLICIT)
     law = Law(rock)
-    softening, trial, ft, e_old = random_returns(
-        law, np.random.default_rng(7), n_random(3000)
-    )
+    softening, trial, ft, e_old = random_returns(law, np.random.default_rng(7), n_random(3000))
     results = kernels.return_principal(rock, softening, trial, ft, e_old)
     assert_consistent(law, softening, trial, ft, e_old, results, checked_strength=ft)
     implicit = kernels.return_principal(packed(name), softening, trial, ft, e_old)
@@ -194,7 +192,7 @@ def test_explicit_coupling_leaves_a_plane_above_its_new_strength():
         rock = packed(name, hardening=TOTAL, coupling=EXPLICIT)
         law = Law(rock)
         softening, trial, ft, e_old = random_returns(law, np.random.default_rng(8), 3000)
-        e, dep, _, _, code = kernels.return_principal(rock, softening, trial, ft, e_old)
+        _, dep, _, _, code = kernels.return_principal(rock, softening, trial, ft, e_old)
         assert not code.any()
         stress = law.stress(trial, dep)
         excess = (stress - law.softened(ft, softening, dep)).max(axis=1)
@@ -207,9 +205,7 @@ def test_without_compressive_planes_only_cracks_open():
     rock = packed("quartzite", compression=0)
     law = Law(rock)
     softening, trial, ft, e_old = random_returns(law, np.random.default_rng(9), 2000)
-    e, dep, compressive, active, code = kernels.return_principal(
-        rock, softening, trial, ft, e_old
-    )
+    e, dep, compressive, active, code = kernels.return_principal(rock, softening, trial, ft, e_old)
     assert not code.any()
     assert not compressive.any()
     assert (active < 8).all()
