@@ -192,7 +192,7 @@ def test_explicit_coupling_leaves_a_plane_above_its_new_strength():
         rock = packed(name, hardening=TOTAL, coupling=EXPLICIT)
         law = Law(rock)
         softening, trial, ft, e_old = random_returns(law, np.random.default_rng(8), 3000)
-        e, dep, _, _, code = kernels.return_principal(rock, softening, trial, ft, e_old)
+        _, dep, _, _, code = kernels.return_principal(rock, softening, trial, ft, e_old)
         assert not code.any()
         stress = law.stress(trial, dep)
         excess = (stress - law.softened(ft, softening, dep)).max(axis=1)

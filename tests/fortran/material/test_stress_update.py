@@ -162,8 +162,8 @@ def name_of_return(mask):
 
 def check_batch(batch, seen, checked_with_old_strength=False):
     """All properties of one batch; counts the returns in `seen`."""
-    law, n = batch.law, batch.n
-    stress, e, ft, opening, axis, crack, dep, compressive, active, code = results = batch.step()
+    law = batch.law
+    stress, e, ft, opening, axis, _, dep, compressive, active, code = results = batch.step()
     assert not code.any(), "every increment returns"
     masks, counts = np.unique(active, return_counts=True)
     for mask, count in zip(masks, counts, strict=True):
@@ -306,7 +306,7 @@ def test_an_elastic_material_never_yields():
 def test_a_stress_that_is_not_a_number_is_refused_and_changes_nothing():
     batch = Batch(packed("sandstone"), 10, seed=2)
     batch.strain[:, 1] = np.nan
-    stress, e, ft, opening, axis, crack, dep, _, active, code = batch.step()
+    stress, e, ft, _, axis, _, dep, _, active, code = batch.step()
     np.testing.assert_array_equal(code, 2)
     np.testing.assert_array_equal(stress, batch.stress)
     np.testing.assert_array_equal(e, batch.e)
