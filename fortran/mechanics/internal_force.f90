@@ -161,10 +161,10 @@ contains
       real(wp), intent(out) :: axis(width, 2)       !! axes after an elastic step
 
       integer :: i
-      real(wp) :: mean, half, radius, high, low, turn, first, second, by_radius
+      real(wp) :: mean, half, radius, high, low, turn, first, second, by_radius, least
       logical :: keeps
 
-      !$omp simd private(mean, half, radius, high, low, turn, first, second, by_radius, keeps)
+      !$omp simd private(mean, half, radius, high, low, turn, first, second, by_radius, least, keeps)
       do i = 1, width
          mean = 0.5_wp*(stress(i, 1) + stress(i, 2))
          half = 0.5_wp*(stress(i, 1) - stress(i, 2))
@@ -180,8 +180,9 @@ contains
             first - ft(i, 1)), max(second - ft(i, 2), stress(i, 3) - ft(i, 3)))
          by_radius = 1.0_wp/max(radius, tiny(radius))
          by_radius = merge(by_radius, -by_radius, keeps)
-         axis(i, 1) = merge(half*by_radius, old_axis(i, 1), radius > equal_stress*abs(mean))
-         axis(i, 2) = merge(stress(i, 4)*by_radius, old_axis(i, 2), radius > equal_stress*abs(mean))
+         least = equal_stress*max(abs(stress(i, 1)), abs(stress(i, 2)), abs(stress(i, 3)))
+         axis(i, 1) = merge(half*by_radius, old_axis(i, 1), radius > least)
+         axis(i, 2) = merge(stress(i, 4)*by_radius, old_axis(i, 2), radius > least)
       end do
    end subroutine check_softened
 
