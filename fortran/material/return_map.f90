@@ -19,7 +19,8 @@ module lithofrac_material_return_map
       return_to_set, trial_type
    use lithofrac_material_flow_split, only: least_flow_at_apex, least_flow_of_equal_maxima, &
       least_flow_of_equal_minima
-   use lithofrac_material_mohr_coulomb, only: advance, main_plane_yield, mobilise, mobilised_type
+   use lithofrac_material_mohr_coulomb, only: main_plane_yield, mobilise, mobilised_type
+   use lithofrac_material_pyramid_return, only: return_to_pyramid
    use lithofrac_material_rock, only: rock_type
    use lithofrac_material_tension_planes, only: softened_strength
    implicit none
@@ -30,11 +31,9 @@ module lithofrac_material_return_map
    integer, parameter :: apex_bit = 9      !! all six Mohr-Coulomb planes
    integer, parameter :: mixture_bit = 10  !! two sets that share their stress
 
-   real(wp), parameter :: third = 1.0_wp/3.0_wp
    real(wp), parameter :: two_thirds = 2.0_wp/3.0_wp
    real(wp), parameter :: working_tolerance = 0.5_wp  !! of the yield tolerance
    real(wp), parameter :: tie_tolerance = 1.0e-2_wp   !! of the yield tolerance
-   integer, parameter :: max_newton = 12
    integer, parameter :: max_walk = 2000
    real(wp), parameter :: max_reach = 8.0_wp
    integer, parameter :: max_bracket = 200
@@ -97,7 +96,7 @@ contains
       found = .false.
       mixed = .false.
       if (.not. opens .and. .not. rock%explicit_coupling) then
-         call return_to_main_plane(rock, sorted, ep_eff, now, best, found)
+         call return_to_pyramid(rock, sorted, ep_eff, now, best%e, best%flow, found)
       end if
       if (.not. found) then
          call search(rock, sorted, ep_eff, free_choice, best, mixed, found)
@@ -112,57 +111,6 @@ contains
       dep_compressive(order) = best%flow%x
       active = active_mask(best%flow, order, mixed)
    end subroutine return_to_surface
-
-   !> Newton's method on the plane of the extreme stresses, the most frequent return.
-   pure subroutine return_to_main_plane(rock, trial, e_old, start, best, found)
-      type(rock_type), intent(in) :: rock
-      type(trial_type), intent(in) :: trial
-      real(wp), intent(in) :: e_old
-      type(mobilised_type), intent(in) :: start  !! strength at `e_old`
-      type(sample_type), intent(inout) :: best
-      logical, intent(out) :: found
-
-      type(mobilised_type) :: now
-      integer :: trip
-      real(wp) :: e, f_slope, g, g_slope, give, k_slope, norm, product, stiff, stiff_slope, step, lambda
-
-      found = .false.
-      now = start
-      e = e_old
-      stiff = 0.5_wp*trial%g2 + trial%lame
-      do trip = 1, max_newton
-         product = now%sin_phi*now%sin_psi
-         norm = sqrt(third*(1.0_wp + now%sin_psi**2))
-         give = 1.0_wp/(0.5_wp*trial%g2 + stiff*product)
-         lambda = (now%a*trial%t(1) - now%b*trial%t(3) - now%k)*give
-         g = norm*lambda
-         if (abs(e - e_old - g) <= 1.0e-13_wp*g + trial%noise) exit
-         if (trip == max_newton) return
-         k_slope = now%c_slope*now%cos_phi - now%c*now%sin_phi*now%phi_slope
-         f_slope = 0.5_wp*(trial%t(1) + trial%t(3))*now%cos_phi*now%phi_slope - k_slope
-         stiff_slope = stiff*(now%cos_phi*now%phi_slope*now%sin_psi &
-            + now%sin_phi*now%cos_psi*now%psi_slope)
-         g_slope = norm*give*(f_slope - lambda*stiff_slope) &
-            + third*lambda*now%sin_psi*now%cos_psi*now%psi_slope/norm
-         if (.not. g_slope < 1.0_wp) return
-         step = (e_old + g - e)/(1.0_wp - g_slope)
-         e = e + step
-         if (.not. (e >= e_old .and. e <= start%knot)) return
-         call advance(rock, start, e_old, e, now)
-      end do
-      best%e = e
-      best%flow%tension = 0
-      best%flow%group = 2
-      best%flow%x = [now%a_flow*lambda, 0.0_wp, -now%b_flow*lambda]
-      best%flow%d = best%flow%x
-      best%flow%s = trial%t - trial%g2*best%flow%d - trial%lame*now%sin_psi*lambda
-      found = lambda >= 0.0_wp .and. best%flow%s(1) >= best%flow%s(2) &
-         .and. best%flow%s(2) >= best%flow%s(3) &
-         .and. best%flow%s(1) <= softened_strength(trial%ft(1), trial%h, best%flow%d(1)) &
-         .and. best%flow%s(2) <= trial%ft(2) .and. best%flow%s(3) <= trial%ft(3)
-      if (.not. found .and. best%flow%s(2) > best%flow%s(1)) best%flow%group = 3
-      if (.not. found .and. best%flow%s(2) < best%flow%s(3)) best%flow%group = 4
-   end subroutine return_to_main_plane
 
    !> Smallest root of F, walking the segments of the tables from knot to knot.
    !> Where g grows, steps of -F cannot pass the first root; they double inside a segment.
@@ -308,7 +256,7 @@ contains
 
       integer :: group, high, low, middle
       logical :: open(3), equal_maxima, equal_minima
-      real(wp) :: x(3)
+      real(wp) :: rounding, x(3)
 
       open = flow%s - softened_strength(trial%ft, trial%h, flow%d) >= -trial%tie
       if (.not. any(open)) return
@@ -331,6 +279,12 @@ contains
          return
       end if
       if (sum(x**2) >= sum(flow%x**2)) return
+      ! Planes that only nearly meet do not leave the split open.
+      rounding = 1.0e-13_wp*maxval(abs(flow%d))
+      if (any(flow%d - x < -rounding) .or. any(flow%d - x > rounding .and. .not. open)) return
+      if (equal_maxima .and. .not. equal_minima) then
+         if (min(x(high), x(middle)) < 0.0_wp) return
+      end if
       flow%x = x
       flow%group = merge(group, no_planes, any(x < 0.0_wp .or. x > 0.0_wp))
    end subroutine take_least_flow

@@ -241,16 +241,18 @@ contains
       type(inelastic_type), intent(in) :: state
       real(wp) :: stress(4)
 
-      real(wp) :: du(4), strain(4), rotation(3)
+      real(wp) :: du(4), gradient(4), inelastic(4), strain(4), rotation(3)
       integer :: corner(3)
 
       corner = chunks%node(lane, :, chunk)
+      gradient = chunks%gradient(lane, :, chunk)
+      inelastic = state%strain(lane, :, chunk)
       call gather_previous(corner, fields%u, fields%v, dt, du)
       strain(3) = 0.0_wp
       if (chunks%axisymmetric) strain(3) = chunks%hoop(lane, chunk) &
          *sum(fields%u(1, corner) - dt*fields%v(1, corner))
-      call strains(1, chunks%gradient(lane, :, chunk), du, strain, rotation)
-      call elastic_stress(1, rock%lame, rock%shear, strain, state%strain(lane, :, chunk), stress)
+      call strains(1, gradient, du, strain, rotation)
+      call elastic_stress(1, rock%lame, rock%shear, strain, inelastic, stress)
    end function previous_stress
 
 end module lithofrac_mechanics_internal_force

@@ -119,9 +119,7 @@ def _cone(law, stress, planes, e, flow, near):
         np.abs(x[:, 0] + a * (x[:, 1] + x[:, 2]) / b),
     )
     volume = x.sum(axis=1)
-    apex = np.maximum(
-        sin_psi * x.max(axis=1) - a * volume, -sin_psi * x.min(axis=1) - b * volume
-    )
+    apex = np.maximum(sin_psi * x.max(axis=1) - a * volume, -sin_psi * x.min(axis=1) - b * volume)
     none = (np.zeros(n), np.abs(x).max(axis=1))
     cases = [~main, second & third, second, third]
     negative = np.select(cases, [none[0], np.zeros(n), upper[0], lower[0]], single[0])

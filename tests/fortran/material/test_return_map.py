@@ -165,14 +165,23 @@ def test_two_exhausted_planes_share_the_flow_of_an_edge_evenly():
 def test_explicit_coupling_checks_planes_against_the_old_strength(name, n_random):
     rock = packed(name, coupling=EXPLICIT)
     law = Law(rock)
-    softening, trial, ft, e_old = random_returns(
-        law, np.random.default_rng(7), n_random(3000)
-    )
+    softening, trial, ft, e_old = random_returns(law, np.random.default_rng(7), n_random(3000))
     results = kernels.return_principal(rock, softening, trial, ft, e_old)
     assert_consistent(law, softening, trial, ft, e_old, results, checked_strength=ft)
     implicit = kernels.return_principal(packed(name), softening, trial, ft, e_old)
     # The implicit return is one of the explicit ones, and the smallest strain wins.
     assert np.all(results[0] <= implicit[0] * (1 + 1e-9) + 1e-12)
+
+
+def test_two_sets_that_share_their_stress_are_mixed():
+    # The apex falls onto an open tension plane at one strain; F jumps across zero there.
+    rock = packed("quartzite")
+    trial, ft = [145.48699385e6, 247.51066663e6, 121.29131064e6], [27e6, 27e6, 15.98625295e6]
+    e, dep, compressive, stress, planes = returned(rock, -0.5e9, trial, ft, 0.004)
+    assert planes == {"T3", "apex", "mixture"}
+    np.testing.assert_allclose(stress, stress[2], rtol=1e-9)
+    assert e - 0.004 == pytest.approx(np.sqrt(2 / 3) * np.linalg.norm(compressive), rel=1e-12)
+    assert dep[2] > compressive[2]
 
 
 def test_explicit_coupling_leaves_a_plane_above_its_new_strength():
@@ -183,7 +192,7 @@ def test_explicit_coupling_leaves_a_plane_above_its_new_strength():
         rock = packed(name, hardening=TOTAL, coupling=EXPLICIT)
         law = Law(rock)
         softening, trial, ft, e_old = random_returns(law, np.random.default_rng(8), 3000)
-        e, dep, _, _, code = kernels.return_principal(rock, softening, trial, ft, e_old)
+        _, dep, _, _, code = kernels.return_principal(rock, softening, trial, ft, e_old)
         assert not code.any()
         stress = law.stress(trial, dep)
         excess = (stress - law.softened(ft, softening, dep)).max(axis=1)
@@ -196,9 +205,7 @@ def test_without_compressive_planes_only_cracks_open():
     rock = packed("quartzite", compression=0)
     law = Law(rock)
     softening, trial, ft, e_old = random_returns(law, np.random.default_rng(9), 2000)
-    e, dep, compressive, active, code = kernels.return_principal(
-        rock, softening, trial, ft, e_old
-    )
+    e, dep, compressive, active, code = kernels.return_principal(rock, softening, trial, ft, e_old)
     assert not code.any()
     assert not compressive.any()
     assert (active < 8).all()

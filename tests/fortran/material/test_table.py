@@ -45,9 +45,7 @@ def test_table_agrees_with_numpy(knots, data):
     knots = np.sort(knots)
     if np.diff(knots).min() < 1e-9:  # the slope of a shorter segment is mostly rounding
         return
-    values = data.draw(
-        st.lists(st.floats(-1e3, 1e3), min_size=len(knots), max_size=len(knots))
-    )
+    values = data.draw(st.lists(st.floats(-1e3, 1e3), min_size=len(knots), max_size=len(knots)))
     at = np.linspace(-1.2, 1.2, 97)
     np.testing.assert_allclose(
         table_eval(knots, values, at)[0], np.interp(at, knots, values), atol=1e-9

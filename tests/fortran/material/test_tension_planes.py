@@ -1,6 +1,5 @@
 """Crack band and softening of the tension planes (fortran/material/tension_planes.f90)."""
 
-import numpy as np
 import pytest
 from return_reference import ROCKS, packed
 
