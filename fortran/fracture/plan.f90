@@ -46,7 +46,7 @@ contains
       type(rules_type), intent(in) :: rules
       type(crack_type), allocatable, intent(out) :: cracks(:)
       integer, intent(out) :: n_waiting            !! failed nodes put off by a lock or the limit
-      integer, intent(out) :: n_closed             !! failed nodes with no way for a crack
+      integer, intent(out) :: n_closed             !! of those looked at, with no way for a crack
 
       integer, allocatable :: nodes(:), order(:)
       type(nodal_failure_type), allocatable :: failures(:)
@@ -56,7 +56,6 @@ contains
       logical, allocatable :: locked(:)
       integer :: i, n
 
-      n_waiting = 0
       n_closed = 0
       n = 0
       call find_failed(mesh, topology, factor, normal, rules%weights, nodes, failures)
@@ -65,15 +64,12 @@ contains
       order = descending(failures%factor)
       do i = 1, size(nodes)
          associate (node => nodes(order(i)), failure => failures(order(i)))
+            if (n == size(planned)) exit
             call fan_of_node(mesh, topology, node, fan)
             call choose_arms(mesh, topology, fan, failure%along, rules%mode, rules%guard, arms)
             if (size(arms) == 0) then
                n_closed = n_closed + 1
-            else if (n == size(planned)) then
-               n_waiting = n_waiting + 1
-            else if (any(locked(touched_elements(topology, fan, arms)))) then
-               n_waiting = n_waiting + 1
-            else
+            else if (.not. any(locked(touched_elements(topology, fan, arms)))) then
                locked(touched_elements(topology, fan, arms)) = .true.
                n = n + 1
                planned(n) = crack_type(node, failure, arms)
@@ -81,6 +77,7 @@ contains
          end associate
       end do
       cracks = planned(:n)
+      n_waiting = size(nodes) - n - n_closed
    end subroutine plan_cracks
 
    !> Nodes with F_p >= 1, ascending, and what failed there.

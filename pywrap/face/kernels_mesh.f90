@@ -1,6 +1,6 @@
 !> Meshes that crack, for tests: one slot holds a mesh, its topology and the last list of edits.
 !> Only intrinsic types and explicit shapes here: this is a file that f2py reads. Every routine
-!> ends with `code`, `message`; numbers start at 1.
+!> ends with `code`, `message`; numbers start at 1. The file is long because all share the slots.
 module kernels_mesh
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use lithofrac_base_status, only: bad_input, ok, set_failure, status_type

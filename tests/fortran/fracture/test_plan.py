@@ -113,7 +113,7 @@ def test_the_number_of_cracks_is_limited_to_the_first(lattice):
     everything = plan(lattice, factor)
     three = plan(lattice, factor, most=3)
     assert three.cracks == everything.cracks[:3]
-    assert three.waiting == everything.waiting + len(everything.cracks) - 3
+    assert 3 + three.waiting + three.closed == 49
 
 
 def test_planning_changes_nothing_and_says_the_same_twice(rough_lattice):
@@ -165,6 +165,25 @@ def test_numbering_does_not_matter(rough_lattice):
             assert {middle(nodes, triangles, arm) for arm in here.arms} == {
                 middle(moved, again, arm) for arm in there.arms
             }
+
+
+@pytest.mark.parametrize("angle", [0.4, np.pi / 2, 3.0])
+@pytest.mark.parametrize("mode", ["inter", "intra"])
+def test_turning_the_model_does_not_matter(rough_lattice, mode, angle):
+    nodes, triangles = rough_lattice
+    factor, normal = random_failure(72, np.random.default_rng(9))
+    planned = plan((nodes, triangles), factor, normal, mode=mode)
+    rotate, rotate_twice = (
+        np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]]) for a in (angle, 2 * angle)
+    )
+    turned = plan((nodes @ rotate, triangles), factor, normal @ rotate_twice, mode=mode)
+    assert nodes_of(turned) == nodes_of(planned)
+    for here, there in zip(planned.cracks, turned.cracks, strict=True):
+        rounded = [
+            sorted((e, k, -1.0 if s is None else round(s, 9)) for e, k, s in crack.arms)
+            for crack in (here, there)
+        ]
+        assert rounded[0] == rounded[1]
 
 
 def middle(nodes, triangles, arm):
