@@ -99,7 +99,10 @@ def test_a_crack_along_the_boundary_is_none(lattice, degrees):
     assert cracked(lattice, BOTTOM, degrees).changes == 0
 
 
-def test_crack_tip_goes_on_ahead_and_not_back(lattice):
+@pytest.mark.parametrize(
+    ("degrees", "far"), [(175, (4, 3)), (40, (3, 4)), (-140, (3, 4)), (140, (4, 2))]
+)
+def test_crack_tip_goes_on_ahead_and_not_back(lattice, degrees, far):
     topology = Topology(*lattice)
     row = [
         [e, list(t).index(number(i, 3))]
@@ -109,8 +112,8 @@ def test_crack_tip_goes_on_ahead_and_not_back(lattice):
     ]
     topology.split(row)  # from the left boundary to the centre
     assert topology.n_nodes == 49 + 3
-    cracked(topology, CENTRE, 175)
-    assert same(faces(topology), spokes(lattice, CENTRE, number(4, 3)))
+    cracked(topology, CENTRE, degrees)
+    assert same(faces(topology), spokes(lattice, CENTRE, number(*far)))
     assert topology.n_nodes == 49 + 4
 
 
