@@ -87,7 +87,8 @@ contains
       end if
       call strains(width, chunks%gradient(:, :, chunk), du, strain, rotation)
       if (state%touched(chunk)) then
-         call elastic_stress(width, rock%lame, rock%shear, strain, state%strain(:, :, chunk), stress)
+         call elastic_stress(width, rock%lame, rock%shear, strain, state%strain(:, :, chunk), &
+            stress)
       else
          call elastic_stress(width, rock%lame, rock%shear, strain, no_strain, stress)
       end if
@@ -116,8 +117,9 @@ contains
          state%sin_phi(:, chunk), state%c_cos_phi(:, chunk), excess, axis)
       if (maxval(excess) > rock%yield_tolerance) then
          do lane = 1, chunks%filled(chunk)
-            if (excess(lane) > rock%yield_tolerance) &
+            if (excess(lane) > rock%yield_tolerance) then
                call return_lane(chunks, chunk, lane, rock, fields, dt, state, stress, failure)
+            end if
          end do
       end if
       where (excess <= rock%yield_tolerance)
@@ -161,10 +163,11 @@ contains
       real(wp), intent(out) :: axis(width, 2)       !! axes after an elastic step
 
       integer :: i
-      real(wp) :: mean, half, radius, high, low, turn, first, second, by_radius
+      real(wp) :: mean, half, radius, high, low, turn, first, second, by_radius, least
       logical :: keeps
 
-      !$omp simd private(mean, half, radius, high, low, turn, first, second, by_radius, keeps)
+      !$omp simd private(mean, half, radius, high, low, turn, first, second) &
+      !$omp& private(by_radius, least, keeps)
       do i = 1, width
          mean = 0.5_wp*(stress(i, 1) + stress(i, 2))
          half = 0.5_wp*(stress(i, 1) - stress(i, 2))
@@ -180,8 +183,9 @@ contains
             first - ft(i, 1)), max(second - ft(i, 2), stress(i, 3) - ft(i, 3)))
          by_radius = 1.0_wp/max(radius, tiny(radius))
          by_radius = merge(by_radius, -by_radius, keeps)
-         axis(i, 1) = merge(half*by_radius, old_axis(i, 1), radius > equal_stress*abs(mean))
-         axis(i, 2) = merge(stress(i, 4)*by_radius, old_axis(i, 2), radius > equal_stress*abs(mean))
+         least = equal_stress*max(abs(stress(i, 1)), abs(stress(i, 2)), abs(stress(i, 3)))
+         axis(i, 1) = merge(half*by_radius, old_axis(i, 1), radius > least)
+         axis(i, 2) = merge(stress(i, 4)*by_radius, old_axis(i, 2), radius > least)
       end do
    end subroutine check_softened
 
@@ -211,8 +215,9 @@ contains
       call update_stress(rock, state%softening(lane, chunk), old, trial, point, sigma, dep, &
          dep_compressive, active, code)
       if (code /= ok) then
-         if (failure%code == ok) &
+         if (failure%code == ok) then
             failure = failure_type(code, chunks%element(lane, chunk), trial)
+         end if
          return
       end if
       stress(lane, :) = sigma
@@ -220,9 +225,10 @@ contains
       work(1) = 0.5_wp*dot_product(old + sigma, dep_compressive)
       work(2) = 0.5_wp*dot_product(old + sigma, dep - dep_compressive)
       state%dissipated(lane, :, chunk) = state%dissipated(lane, :, chunk) + work
-      if (point%ep_eff > state%plastic_strain(lane, chunk)) &
+      if (point%ep_eff > state%plastic_strain(lane, chunk)) then
          call strength_coefficients(rock, point%ep_eff, state%sin_phi(lane, chunk), &
-         state%c_cos_phi(lane, chunk))
+            state%c_cos_phi(lane, chunk))
+      end if
       state%plastic_strain(lane, chunk) = point%ep_eff
       state%ft(lane, :, chunk) = point%ft
       state%opening(lane, :, chunk) = point%opening
@@ -241,16 +247,18 @@ contains
       type(inelastic_type), intent(in) :: state
       real(wp) :: stress(4)
 
-      real(wp) :: du(4), strain(4), rotation(3)
+      real(wp) :: du(4), gradient(4), inelastic(4), strain(4), rotation(3)
       integer :: corner(3)
 
       corner = chunks%node(lane, :, chunk)
+      gradient = chunks%gradient(lane, :, chunk)
+      inelastic = state%strain(lane, :, chunk)
       call gather_previous(corner, fields%u, fields%v, dt, du)
       strain(3) = 0.0_wp
       if (chunks%axisymmetric) strain(3) = chunks%hoop(lane, chunk) &
          *sum(fields%u(1, corner) - dt*fields%v(1, corner))
-      call strains(1, chunks%gradient(lane, :, chunk), du, strain, rotation)
-      call elastic_stress(1, rock%lame, rock%shear, strain, state%strain(lane, :, chunk), stress)
+      call strains(1, gradient, du, strain, rotation)
+      call elastic_stress(1, rock%lame, rock%shear, strain, inelastic, stress)
    end function previous_stress
 
 end module lithofrac_mechanics_internal_force

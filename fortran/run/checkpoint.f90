@@ -128,6 +128,8 @@ contains
          self%buffer(self%place + 1:self%place + n) = values
       case (restoring)
          values = self%buffer(self%place + 1:self%place + n)
+      case default
+         continue  ! counting only
       end select
       self%place = self%place + n
    end subroutine visit

@@ -21,6 +21,7 @@ module lithofrac_run_step
    public :: advance, start
 
    integer, parameter :: quotient_interval = 100      !! steps between Rayleigh quotients
+   integer, parameter :: quotient_length = 10         !! steps that a quotient looks at
    real(wp), parameter :: largest_alpha_dt = 0.05_wp  !! keeps the lagged drag stable
 
 contains
@@ -187,26 +188,24 @@ contains
       end do
    end subroutine set_damping
 
-   !> Rayleigh quotient of one increment in every hundred: the lowest frequency in motion.
+   !> Rayleigh quotient of one increment in every interval: the frequency that is in motion.
    subroutine update_alpha(model)
       type(model_type), intent(inout) :: model
 
       integer :: body
 
-      associate (fields => model%fields)
-         select case (mod(model%step, quotient_interval))
-         case (0)
-            model%reference_u = fields%u
-            model%reference_f = fields%internal
-            if (model%step == 0) model%alpha = alpha_of(model, model%lowest_frequency)
-         case (10)
-            do body = 1, model%mesh%n_bodies
-               model%alpha(body) = alpha_of(model, rayleigh_frequency(body, &
-                  model%mesh%body_of_node, fields%free_mass, fields%u - model%reference_u, &
-                  fields%internal - model%reference_f, model%lowest_frequency(body)))
-            end do
-         end select
-      end associate
+      if (mod(model%step, quotient_interval) == 0) then
+         model%reference_u = model%fields%u
+         model%reference_f = model%fields%internal
+         if (model%step == 0) model%alpha = alpha_of(model, model%lowest_frequency)
+      else if (mod(model%step, quotient_interval) == quotient_length) then
+         do body = 1, model%mesh%n_bodies
+            model%alpha(body) = alpha_of(model, rayleigh_frequency(body, &
+               model%mesh%body_of_node, model%fields%free_mass, &
+               model%fields%u - model%reference_u, model%fields%internal - model%reference_f, &
+               model%lowest_frequency(body)))
+         end do
+      end if
    end subroutine update_alpha
 
    elemental function alpha_of(model, omega) result(alpha)
@@ -251,7 +250,7 @@ contains
 
       do block = 1, size(failures)
          if (failures(block)%code == ok) cycle
-         write (words, '(a, i0, a, es11.4, a, i0, a, 4es11.3, a)') "step ", model%step, &
+         write (words, "(a, i0, a, es11.4, a, i0, a, 4es11.3, a)") "step ", model%step, &
             ", time ", model%step*model%dt, " s, element ", failures(block)%element, &
             ": no consistent return of the trial stress", failures(block)%trial*1.0e-6_wp, &
             " MPa (xx, yy, zz, xy)"
@@ -271,7 +270,7 @@ contains
       do node = 1, model%mesh%n_nodes
          if (.not. all(abs(model%fields%v(:, node)) <= huge(1.0_wp))) exit
       end do
-      write (words, '(a, i0, a, es11.4, a, i0, a)') "step ", model%step, ", time ", &
+      write (words, "(a, i0, a, es11.4, a, i0, a)") "step ", model%step, ", time ", &
          model%step*model%dt, " s, node ", min(node, model%mesh%n_nodes), &
          ": velocity is not finite; try a smaller time_step_factor or loading speed"
       call set_failure(status, not_finite, trim(words))

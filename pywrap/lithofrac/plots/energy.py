@@ -37,13 +37,13 @@ def draw_ledger(axes: Axes, run: Run) -> None:
     time = 1e3 * table["time_s"]
     axes.stackplot(
         time,
-        [table[column] for column, _, _ in PARTS],
+        [table[column].abs() for column, _, _ in PARTS],  # damping is booked as negative work
         labels=[label for _, label, _ in PARTS],
         colors=[colour for _, _, colour in PARTS],
         lw=0,
     )
     axes.plot(time, table["external_J"], "--", color=style.BLACK, label="external work")
-    depth = "radian" if run.test == "triaxial" else "metre of depth"
+    depth = "radian" if run.axisymmetric else "metre of depth"
     axes.set(ylabel=f"energy [J per {depth}]", ylim=(0, None))
     axes.legend(loc="upper left")
 

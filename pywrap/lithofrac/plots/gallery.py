@@ -28,8 +28,8 @@ def figure(inputs: list[Path], data: Path) -> Figure:
         )
     curves.set(xlabel="axial strain [%]", ylabel="axial stress [MPa]", xlim=(0, None))
     curves.set_title(f"sandstone, {TITLES.get(runs[0].test, runs[0].test)}")
-    curves.set_ylim(0, None)
-    curves.legend(loc="upper right", title="confinement")
+    curves.set_ylim(0, 1.25 * curves.get_ylim()[1])
+    curves.legend(loc="upper center", ncols=len(runs), title="confinement", columnspacing=1.0)
     fields = [last_frame(run) for run in runs]
     top = max(float(np.quantile(field.cell_data["plastic_strain"][0], 0.99)) for field in fields)
     for panel, run, field in zip(specimens, runs, fields, strict=True):
@@ -50,7 +50,7 @@ def draw_plastic_strain(axes: Axes, field: meshio.Mesh, top: float) -> PolyColle
     moved = 1e3 * (field.points + field.point_data["displacement_m"])
     drawn = axes.tripcolor(
         moved[:, 0], moved[:, 1], np.ravel(field.cell_data["plastic_strain"][0]),
-        triangles=field.cells[0].data, cmap="cividis_r", vmin=0.0, vmax=top, rasterized=True,
+        triangles=field.cells[0].data, cmap="magma_r", vmin=0.0, vmax=top, rasterized=True,
     )  # fmt: skip
     axes.set_aspect("equal")
     axes.set_axis_off()

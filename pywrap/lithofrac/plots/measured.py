@@ -54,7 +54,7 @@ def draw_tautona(axes: Axes, quartzite: Material, data: Path) -> None:
             va="top",
             fontsize=7,
         )
-    axes.set_title("quartzite")
+    axes.set_title("quartzite: Table 1 and TauTona")
     axes.legend(loc="upper left")
 
 
@@ -72,7 +72,7 @@ def draw_zigong(axes: Axes, data: Path) -> None:
         table["confinement_MPa"], table["strength_MPa"], "s", color=style.BLACK,
         label="Zigong, mean",
     )  # fmt: skip
-    axes.set_title("sandstone")
+    axes.set_title("sandstone: Zigong and its line")
     axes.text(
         0.97,
         0.05,

@@ -21,9 +21,11 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     """Mesh of one run, rebuilt boundary conditions drawn on it."""
     run = find_runs(inputs)[0]
     problem = make_problem(load_case(run.folder / "case.yaml"), Mesh.load(run.folder / "mesh.npz"))
-    drawn, axes = style.new_figure(height=5.0)
+    drawn, axes = style.new_figure(height=4.6, width=5.6)
     draw_problem(axes[0, 0], problem)
-    axes[0, 0].set_title(run.name)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    single = dict(zip(labels, handles, strict=True))
+    drawn.legend(single.values(), single.keys(), loc="outside right center", title=run.name)
     return drawn
 
 
@@ -39,15 +41,12 @@ def draw_problem(axes: Axes, problem: Problem) -> None:
     for load in problem.pressure_loads:
         draw_pressure(axes, problem.mesh, load, size)
     axes.set_aspect("equal")
-    axes.margins(0.12)
+    axes.margins(0.06)
     axes.grid(visible=False)
     radial = problem.axisymmetric
     axes.set(xlabel="radius [mm]" if radial else "x [mm]", ylabel="z [mm]" if radial else "y [mm]")
     if radial:
         axes.axvline(0.0, color=style.GREY, ls="-.", lw=0.8, label="axis of revolution")
-    handles, labels = axes.get_legend_handles_labels()
-    single = dict(zip(labels, handles, strict=True))
-    axes.legend(single.values(), single.keys(), loc="center left", bbox_to_anchor=(1.02, 0.5))
 
 
 def draw_mesh(axes: Axes, mesh: Mesh) -> None:
@@ -60,7 +59,7 @@ def draw_mesh(axes: Axes, mesh: Mesh) -> None:
             cmap=style.flat(BODIES[index % len(BODIES)]), edgecolors=style.GREY, linewidth=0.25,
             rasterized=len(chosen) > 5000,
         )  # fmt: skip
-        label = f"{name}: {len(chosen)} triangles"
+        label = f"{name}, triangles: {len(chosen)}"
         axes.plot([], [], "s", color=BODIES[index % len(BODIES)], mec=style.GREY, label=label)
     for edges in mesh.edge_sets.values():
         axes.add_collection(LineCollection(nodes[edges], colors=style.BLACK, linewidths=0.9))
@@ -70,8 +69,8 @@ def draw_rollers(axes: Axes, mesh: Mesh, load: VelocityLoad, size: float) -> Non
     """Draw circles just outside nodes that cannot move in one direction."""
     points = 1e3 * _some(mesh.nodes[load.nodes])
     points[:, load.component] += 0.015 * size * _outward(mesh, load)
-    axes.plot(*points.T, "o", ms=4, mfc="white", mec=style.GREEN, ls="none", clip_on=False,
-              label="roller (symmetry or support)")  # fmt: skip
+    axes.plot(*points.T, "o", ms=4, mfc="white", mec=style.GREEN, ls="none",
+              label="roller")  # fmt: skip
 
 
 def draw_velocity(axes: Axes, mesh: Mesh, load: VelocityLoad, size: float) -> None:
@@ -97,7 +96,7 @@ def draw_pressure(axes: Axes, mesh: Mesh, load: PressureLoad, size: float) -> No
     chosen = _spread(len(ends))
     middle = ends.mean(axis=1)[chosen] - 0.02 * size * inward[chosen]
     _arrows(axes, middle, 0.06 * size * inward[chosen], style.RED)
-    label = f"pressure {load.pressure / 1e6:g} MPa ({load.name})"
+    label = f"pressure {load.pressure / 1e6:.3g} MPa ({load.name})"
     if load.stiffness > 0.0:
         label += f"\nand spring {load.stiffness / 1e9:.3g} MPa/mm"
     axes.plot([], [], color=style.RED, marker=r"$\leftarrow$", ls="none", label=label)
@@ -105,10 +104,12 @@ def draw_pressure(axes: Axes, mesh: Mesh, load: PressureLoad, size: float) -> No
 
 def _arrows(axes: Axes, tips: np.ndarray, steps: np.ndarray, colour: str) -> None:
     """Draw arrows that end at `tips`; sizes in the units of the axes."""
-    axes.quiver(
+    arrows = axes.quiver(
         *tips.T, *steps.T, pivot="tip", angles="xy", scale_units="xy", scale=1.0,
-        color=colour, width=0.003, clip_on=False, zorder=4,
+        color=colour, units="inches", width=0.018, headwidth=5, headlength=6, headaxislength=6,
+        zorder=4,
     )  # fmt: skip
+    arrows.set_in_layout(False)  # its extent is not known before the axes have their size
     axes.plot(*(tips - steps).T, alpha=0.0)  # so that the limits of the axes include the tails
 
 
@@ -128,4 +129,5 @@ def _some(points: np.ndarray) -> np.ndarray:
 
 
 def _spread(count: int) -> np.ndarray:
-    return np.unique(np.linspace(0, count - 1, min(count, ARROWS)).round().astype(int))
+    """At most `ARROWS` of `count` indices, evenly apart."""
+    return np.arange(0, count, max(1, -(-(count - 1) // (ARROWS - 1))))
