@@ -4,16 +4,17 @@
 !> velocity of the half step after it. The next call starts by moving the nodes.
 module lithofrac_run_step
    use lithofrac_base_kinds, only: wp
-   use lithofrac_base_status, only: bad_input, no_return_map, not_finite, ok, set_failure, &
-      status_type
+   use lithofrac_base_status, only: bad_element, bad_input, no_return_map, not_finite, ok, &
+      set_failure, status_type
    use lithofrac_mechanics_blocks, only: assemble
    use lithofrac_mechanics_internal_force, only: chunk_force, failure_type
    use lithofrac_mechanics_loads, only: apply_pressure, apply_velocity, work_after, work_before
+   use lithofrac_mesh_mesh, only: triangle_area
    use lithofrac_run_damping, only: fit_affine, rayleigh_frequency
    use lithofrac_run_model, only: model_type
    use lithofrac_run_node_update, only: sum_moments, update_affine, update_ground, &
       update_plain
-   use lithofrac_run_observe, only: internal_energy
+   use lithofrac_run_observe, only: internal_energy, kinetic_energy
    use lithofrac_run_settings, only: no_damping, relative_to_affine
    implicit none
    private
@@ -56,7 +57,7 @@ contains
          call move_run(model, run, drift=.false.)
       end do
       model%started = .true.
-      model%ledger%initial = sum(model%sums(1, :)) + sum(internal_energy(model))
+      model%ledger%initial = kinetic_energy(model) + sum(internal_energy(model))
       call check_finite(model, status)
    end subroutine start
 
@@ -112,6 +113,7 @@ contains
       !$omp end parallel
       call report_failure(model, failures, status)
       if (status%code == ok) call check_finite(model, status)
+      if (status%code == ok) call check_areas(model, status)
    end subroutine advance
 
    !> Element forces of one block of chunks.
@@ -250,7 +252,7 @@ contains
 
       do block = 1, size(failures)
          if (failures(block)%code == ok) cycle
-         write (words, "(a, i0, a, es11.4, a, i0, a, 4es11.3, a)") "step ", model%step, &
+         write (words, "(a, i0, a, es12.4e3, a, i0, a, 4es12.3e3, a)") "step ", model%step, &
             ", time ", model%step*model%dt, " s, element ", failures(block)%element, &
             ": no consistent return of the trial stress", failures(block)%trial*1.0e-6_wp, &
             " MPa (xx, yy, zz, xy)"
@@ -258,6 +260,28 @@ contains
          return
       end do
    end subroutine report_failure
+
+   !> No element may turn inside out: its answer would be smooth and wrong.
+   subroutine check_areas(model, status)
+      type(model_type), intent(in) :: model
+      type(status_type), intent(out) :: status
+
+      character(len=200) :: words
+      real(wp) :: x(2, 3)
+      integer :: element
+
+      do element = 1, model%mesh%n_elements
+         associate (corner => model%mesh%triangles(:, element))
+            x = model%mesh%nodes(:, corner) + model%fields%u(:, corner)
+         end associate
+         if (triangle_area(x(:, 1), x(:, 2), x(:, 3)) > 0.0_wp) cycle
+         write (words, "(a, i0, a, es12.4e3, a, i0, a)") "step ", model%step, ", time ", &
+            model%step*model%dt, " s, element ", element, &
+            ": it has turned inside out; try a finer mesh, a slower load or a smaller end strain"
+         call set_failure(status, bad_element, trim(words))
+         return
+      end do
+   end subroutine check_areas
 
    subroutine check_finite(model, status)
       type(model_type), intent(in) :: model
@@ -270,7 +294,7 @@ contains
       do node = 1, model%mesh%n_nodes
          if (.not. all(abs(model%fields%v(:, node)) <= huge(1.0_wp))) exit
       end do
-      write (words, "(a, i0, a, es11.4, a, i0, a)") "step ", model%step, ", time ", &
+      write (words, "(a, i0, a, es12.4e3, a, i0, a)") "step ", model%step, ", time ", &
          model%step*model%dt, " s, node ", min(node, model%mesh%n_nodes), &
          ": velocity is not finite; try a smaller time_step_factor or loading speed"
       call set_failure(status, not_finite, trim(words))
