@@ -194,17 +194,23 @@ contains
    subroutine update_alpha(model)
       type(model_type), intent(inout) :: model
 
-      integer :: body
+      real(wp), allocatable :: u(:, :)
+      integer :: body, phase
 
-      if (mod(model%step, quotient_interval) == 0) then
-         model%reference_u = model%fields%u
+      phase = mod(model%step, quotient_interval)
+      if (phase /= 0 .and. phase /= quotient_length) return
+      ! The internal force at hand is that of the step before; so is this displacement.
+      u = model%fields%u
+      if (model%step > 0) u = u - model%dt*model%fields%v
+      if (phase == 0) then
+         model%reference_u = u
          model%reference_f = model%fields%internal
          if (model%step == 0) model%alpha = alpha_of(model, model%lowest_frequency)
-      else if (mod(model%step, quotient_interval) == quotient_length) then
+      else
          do body = 1, model%mesh%n_bodies
             model%alpha(body) = alpha_of(model, rayleigh_frequency(body, &
                model%mesh%body_of_node, model%fields%free_mass, &
-               model%fields%u - model%reference_u, model%fields%internal - model%reference_f, &
+               u - model%reference_u, model%fields%internal - model%reference_f, &
                model%lowest_frequency(body)))
          end do
       end if
