@@ -13,7 +13,6 @@ import yaml
 
 from lithofrac.config.errors import ConfigError
 
-
 INT, FLOAT = "tag:yaml.org,2002:int", "tag:yaml.org,2002:float"
 NUMBERS = {
     INT: re.compile(r"[-+]?[0-9]+\Z"),
