@@ -6,7 +6,6 @@ by the command that needs them.
 
 from __future__ import annotations
 
-import math
 import signal
 import subprocess
 import sys
@@ -159,10 +158,15 @@ def point(options: Namespace) -> int:
     from lithofrac.config.material import Material
 
     rock = Material.load(options.rock)
-    if options.end_strain is not None and not 0.0 < options.end_strain < math.inf:
-        raise ConfigError(f"--end-strain {options.end_strain:g}: expected a number above 0")
-    if options.stiffness is not None and not 0.0 <= options.stiffness < math.inf:
-        raise ConfigError(f"--stiffness {options.stiffness:g}: expected a number not below 0")
+    if options.end_strain is not None and not 0.0 < options.end_strain < 1.0:
+        raise ConfigError(f"--end-strain {options.end_strain:g}: expected a number between 0 and 1")
+    if options.stiffness is not None and not 0.0 <= options.stiffness <= 1e3:
+        raise ConfigError(f"--stiffness {options.stiffness:g}: expected a number from 0 to 1000")
+    for confinement in options.confinement_MPa:
+        if not 0.0 <= confinement <= 1e6:
+            raise ConfigError(
+                f"--confinement-MPa {confinement:g}: expected a number from 0 to 1e+06"
+            )
     given = {"end_strain": options.end_strain, "stiffness": options.stiffness}
     more = {name: value for name, value in given.items() if value is not None}
     one_file = options.out.suffix == ".parquet"

@@ -12,6 +12,8 @@ MM = 1e-3  # metres
 MPA = 1e6  # pascals
 GPA = 1e9  # pascals
 
+NonNegative = Annotated[float, Field(ge=0.0)]
+
 # Wide enough for every rock, metal and test; outside, products of keys overflow or vanish.
 Length = Annotated[float, Field(ge=1e-3, le=1e7)]  # mm
 Coordinate = Annotated[float, Field(ge=-1e7, le=1e7)]  # mm

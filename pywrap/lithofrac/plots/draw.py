@@ -49,6 +49,11 @@ def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> 
         When the kind or format is unknown, an input is missing, or a data file is wrong.
     """
     data = Path("data") if data is None else data
+    if kind not in FIGURES and kind not in TABLES:
+        raise DataError(
+            f"plot: no kind {kind!r}, expected a figure ({', '.join(FIGURES)}) "
+            f"or, into a .csv, a table ({', '.join(TABLES)})"
+        )
     missing = [str(path) for path in inputs if not Path(path).exists()]
     if missing:
         raise DataError(f"{missing[0]}: no such file or folder, expected an input of the plot")
@@ -62,7 +67,13 @@ def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> 
         raise DataError(f"plot: no {what} {kind!r}, expected one of {', '.join(known)}")
     if known is FIGURES and not inputs:
         raise DataError(f"plot {kind}: no input, expected results folders or files to draw")
-    made = known[kind](inputs, data)
+    try:
+        made = known[kind](inputs, data)
+    except FileNotFoundError as error:  # an input that lies in no results folder
+        raise DataError(
+            f"plot {kind}: {error.filename or error}: no such file, expected an input in a results "
+            "folder of `lithofrac run`"
+        ) from None
     if known is FIGURES:
         style.save(made, out)
         return
