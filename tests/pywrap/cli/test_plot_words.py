@@ -10,7 +10,7 @@ pytestmark = pytest.mark.no_core
 def test_an_unknown_kind_lists_all(tmp_path, capsys):
     assert main(["plot", "foo", "x", "--out", str(tmp_path / "a.svg")]) == 2
     said = capsys.readouterr().err
-    assert said.startswith("lithofrac: plot: no kind 'foo', expected a figure (single_element, ")
+    assert said.startswith("lithofrac: plot: no figure 'foo', expected one of single_element, ")
     assert "energy" in said and "kirsch" in said
 
 
