@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 
 import lithofrac
@@ -35,6 +36,7 @@ def _command(commands, name: str, summary: str, example: str) -> argparse.Argume
     )
 
 
+MOST_THREADS = max(64, 4 * (os.cpu_count() or 1))  # far more than help, far fewer than crash
 CASE = "case file (.yaml) or name in the suite; NAME@seed2 is another mesh"
 
 
@@ -49,8 +51,8 @@ def _check(commands) -> None:
 def _mesh(commands) -> None:
     one = _command(commands, "mesh", "mesh a case", "kirsch --out out/kirsch.npz")
     one.add_argument("case", metavar="CASE", help=CASE)
-    one.add_argument("--out", type=Path, required=True, metavar="FILE", help="mesh to write, .npz")
-    one.add_argument("--seed", type=_at_least_one, metavar="N", help="realisation of the mesh")
+    one.add_argument("--out", type=_path, required=True, metavar="FILE", help="mesh to write, .npz")
+    one.add_argument("--seed", type=_seed, metavar="N", help="realisation of the mesh")
     _source_of_case(one)
 
 
@@ -62,10 +64,10 @@ def _run(commands) -> None:
         "sandstone_triaxial_p10 --set loading.end_strain=0.01 --out out/p10",
     )
     one.add_argument("case", metavar="CASE", help=CASE)
-    one.add_argument("--out", type=Path, required=True, metavar="DIR", help="results folder")
+    one.add_argument("--out", type=_path, required=True, metavar="DIR", help="results folder")
     one.add_argument("--mesh", type=Path, metavar="FILE", help="mesh to use, of `lithofrac mesh`")
     one.add_argument(
-        "--threads", type=_at_least_one, default=1, metavar="N", help="results are the same bits"
+        "--threads", type=_threads, default=1, metavar="N", help="results are the same bits"
     )
     one.add_argument("--resume", action="store_true", help="go on from the checkpoint in DIR")
     one.add_argument("--quiet", action="store_true", help="print errors only")
@@ -81,14 +83,14 @@ def _plot(commands) -> None:
     )
     one.add_argument("kind", metavar="KIND", help="what to draw; an unknown word lists all")
     one.add_argument("input", nargs="*", type=Path, metavar="INPUT", help="results folder or file")
-    one.add_argument("--out", type=Path, required=True, metavar="FILE", help=".svg .png .pdf .csv")
+    one.add_argument("--out", type=_path, required=True, metavar="FILE", help=".svg .png .pdf .csv")
     one.add_argument("--data", type=Path, metavar="DIR", help="measured data, default data/")
 
 
 def _report(commands) -> None:
     one = _command(commands, "report", "write the report of a suite", "out --out reports/suite.md")
     one.add_argument("folder", type=Path, metavar="DIR", help="folder of the results folders")
-    one.add_argument("--out", type=Path, required=True, metavar="FILE", help="Markdown to write")
+    one.add_argument("--out", type=_path, required=True, metavar="FILE", help="Markdown to write")
 
 
 def _point(commands) -> None:
@@ -119,7 +121,7 @@ def _point(commands) -> None:
         "--stiffness", type=float, metavar="K", help="of stiff_confinement, over Young's modulus"
     )
     one.add_argument(
-        "--out", type=Path, required=True, metavar="FILE", help="curve, .parquet, or a folder"
+        "--out", type=_path, required=True, metavar="FILE", help="curve, .parquet, or a folder"
     )
 
 
@@ -130,7 +132,23 @@ def _source_of_case(one: argparse.ArgumentParser) -> None:
     )
 
 
-def _at_least_one(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text}: expected a whole number, 1 or more")
-    return int(text)
+def _path(text: str) -> Path:
+    if not text:  # Path("") is the working folder
+        raise argparse.ArgumentTypeError("empty, expected a path")
+    return Path(text)
+
+
+def _threads(text: str) -> int:
+    return _whole(text, MOST_THREADS)
+
+
+def _seed(text: str) -> int:
+    return _whole(text, 2**31 - 1)
+
+
+def _whole(text: str, most: int) -> int:
+    digits = text.lstrip("0")
+    in_range = text.isdecimal() and 0 < len(digits) <= len(str(most)) and int(digits) <= most
+    if not in_range:
+        raise argparse.ArgumentTypeError(f"{text}: expected a whole number from 1 to {most}")
+    return int(digits)

@@ -6,7 +6,6 @@ by the command that needs them.
 
 from __future__ import annotations
 
-import math
 import signal
 import subprocess
 import sys
@@ -19,10 +18,23 @@ if TYPE_CHECKING:
     from argparse import Namespace
 
     from lithofrac.config import Case
-    from lithofrac.problem import Mesh
+    from lithofrac.problem import Mesh, Problem
 
 GOOD, BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 0, 2, 3, 130
-OWN_FILES = ("summary.json", "*.parquet", "checkpoint*.npz", "fields.pvd", "fields/*.vtu")
+MOST_STEPS = 1_000_000_000
+OWN_FILES = (
+    "summary.json",
+    "history.parquet",
+    "energy.parquet",
+    "probes.parquet",
+    "checkpoint.npz",
+    "checkpoint_previous.npz",
+    "fields.pvd",
+    "fields/frame_[0-9]*.vtu",
+    "fields/failed.vtu",
+    "mesh.npz",
+    "case.yaml",
+)  # what a run writes and the next one may delete
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -50,7 +62,7 @@ def _exit_code(error: Exception) -> int | None:
     from lithofrac.config import ConfigError
 
     names = {base.__name__ for base in type(error).__mro__}
-    if isinstance(error, (ConfigError, OSError)) or "DataError" in names:
+    if isinstance(error, (ConfigError, OSError)) or names & {"DataError", "CheckpointError"}:
         return BAD_INPUT
     return NUMERICAL_FAILURE if names & {"CoreError", "MeshError"} else None
 
@@ -86,13 +98,14 @@ def run(options: Namespace) -> int:
     """Run a case into its results folder."""
     from lithofrac.progress import Progress
     from lithofrac.run import simulate
-    from lithofrac.scenes import make_problem
 
     case = _case(options.case, options)
     made = _mesh_of(case, options)
-    problem = make_problem(case, made)
+    problem, _ = _accepted(options.case, case, made)
+    if options.resume:
+        _find_checkpoint(options.out, problem)
     name = Path(options.case).stem if options.case.endswith((".yaml", ".yml")) else options.case
-    _prepare(options.out, case, made, options.resume)
+    _prepare(options, case, made)
     progress = Progress(name)
     before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
     try:
@@ -128,7 +141,11 @@ def plot(options: Namespace) -> int:
 
 def report(options: Namespace) -> int:
     """Write the report of a finished suite."""
+    from lithofrac.config import ConfigError
     from lithofrac.report import write_report
+
+    if options.out.suffix not in (".md", ".html"):
+        raise ConfigError(f"--out {options.out}: expected a file that ends in .md or .html")
 
     write_report(options.folder, options.out)
     return GOOD
@@ -141,10 +158,15 @@ def point(options: Namespace) -> int:
     from lithofrac.config.material import Material
 
     rock = Material.load(options.rock)
-    if options.end_strain is not None and not 0.0 < options.end_strain < math.inf:
-        raise ConfigError(f"--end-strain {options.end_strain:g}: expected a number above 0")
-    if options.stiffness is not None and not 0.0 <= options.stiffness < math.inf:
-        raise ConfigError(f"--stiffness {options.stiffness:g}: expected a number not below 0")
+    if options.end_strain is not None and not 0.0 < options.end_strain < 1.0:
+        raise ConfigError(f"--end-strain {options.end_strain:g}: expected a number between 0 and 1")
+    if options.stiffness is not None and not 0.0 <= options.stiffness <= 1e3:
+        raise ConfigError(f"--stiffness {options.stiffness:g}: expected a number from 0 to 1000")
+    for confinement in options.confinement_MPa:
+        if not 0.0 <= confinement <= 1e6:
+            raise ConfigError(
+                f"--confinement-MPa {confinement:g}: expected a number from 0 to 1e+06"
+            )
     given = {"end_strain": options.end_strain, "stiffness": options.stiffness}
     more = {name: value for name, value in given.items() if value is not None}
     one_file = options.out.suffix == ".parquet"
@@ -199,32 +221,66 @@ def _mesh_of(case: Case, options: Namespace) -> Mesh:
         raise ConfigError(f"{path}: expected a mesh of `lithofrac mesh` ({error})") from None
 
 
-def _prepare(out: Path, case: Case, mesh: Mesh, resume: bool) -> None:
+def _accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
+    """Problem of a case and its plan, once scene and core have taken both; nothing is written."""
+    from lithofrac.config import ConfigError
+    from lithofrac.errors import CoreError
+    from lithofrac.run import plan
+    from lithofrac.scenes import make_problem
+
+    try:
+        problem = make_problem(case, mesh)
+        expected = plan(problem)
+    except (ConfigError, CoreError) as error:
+        raise ConfigError(f"{name}: {error}") from None
+    if expected["steps"] > MOST_STEPS:
+        key = "hold_transits" if case.loading.kind == "traction" else "speed_m_s"
+        raise ConfigError(
+            f"{name}: loading.{key} = {getattr(case.loading, key):g}: the run takes "
+            f"{expected['steps']:.3g} steps, expected at most {MOST_STEPS}"
+        )
+    return problem, expected
+
+
+def _find_checkpoint(out: Path, problem: Problem) -> None:
+    """Refuse to resume before anything is written when no checkpoint fits."""
+    from lithofrac.errors import CheckpointError, CoreError
+    from lithofrac.results import checkpoint
+
+    try:
+        checkpoint.read(out, checkpoint.fingerprint(problem))
+    except CoreError as error:
+        raise CheckpointError(f"--resume: {error}") from None
+
+
+def _prepare(options: Namespace, case: Case, mesh: Mesh) -> None:
     """Make the results folder; what an earlier run left there goes, unless it is resumed."""
     from lithofrac.config import ConfigError
     from lithofrac.config.setting import text_of
     from lithofrac.results.files import write_whole
 
+    out, named = options.out, Path(options.case)
+    copy = out / "case.yaml"
     try:
         out.mkdir(parents=True, exist_ok=True)
-        if resume:
+        if options.resume:
             return
+        if copy.exists() and named.exists() and copy.samefile(named):
+            raise ConfigError(f"--out {out}: the run would replace its case file {named}")
         for pattern in OWN_FILES:
             for path in out.glob(pattern):
                 path.unlink()
         write_whole(out / "mesh.npz", mesh.save)
-        write_whole(out / "case.yaml", lambda part: part.write_text(text_of(case)))
+        write_whole(copy, lambda part: part.write_text(text_of(case)))
     except OSError as error:
         raise ConfigError(f"--out {out}: cannot be written ({error.strerror})") from None
 
 
 def _print_plan(name: str, case: Case) -> None:
-    from lithofrac.run import plan
-    from lithofrac.scenes import make_mesh, make_problem
+    from lithofrac.scenes import make_mesh
 
     made = make_mesh(case)
-    problem = make_problem(case, made)
-    expected = plan(problem)
+    problem, expected = _accepted(name, case, made)
     width = float(case.material.band_width_of(made.areas().max()))
     used = [feature for feature, uses in expected["uses"].items() if uses]
     unused = [feature for feature, uses in expected["uses"].items() if not uses]

@@ -10,6 +10,10 @@ class CoreError(RuntimeError):
     """The core refused a call; the message says why and where."""
 
 
+class CheckpointError(CoreError):
+    """There is no checkpoint that this run can go on from."""
+
+
 def checked(call: Callable) -> Callable:
     """Turn the trailing (code, message) of a face routine into an exception."""
 

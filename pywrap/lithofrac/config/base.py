@@ -12,8 +12,20 @@ MM = 1e-3  # metres
 MPA = 1e6  # pascals
 GPA = 1e9  # pascals
 
-Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
+
+# Wide enough for every rock, metal and test; outside, products of keys overflow or vanish.
+Length = Annotated[float, Field(ge=1e-3, le=1e7)]  # mm
+Coordinate = Annotated[float, Field(ge=-1e7, le=1e7)]  # mm
+Modulus = Annotated[float, Field(ge=1e-6, le=1e7)]  # GPa
+Density = Annotated[float, Field(ge=1e-3, le=1e6)]  # kg/m3
+Strength = Annotated[float, Field(ge=1e-6, le=1e6)]  # MPa
+Pressure = Annotated[float, Field(ge=0.0, le=1e6)]  # MPa, also cohesion
+Traction = Annotated[float, Field(ge=-1e6, le=1e6)]  # MPa
+FractureEnergy = Annotated[float, Field(ge=1e-6, le=1e9)]  # J/m2
+Speed = Annotated[float, Field(ge=1e-9, le=1e4)]  # m/s
+EndStrain = Annotated[float, Field(ge=1e-9, lt=1.0)]  # a specimen of no height is at 1
+PlasticStrain = Annotated[float, Field(ge=0.0, le=1e3)]
 
 
 class Section(BaseModel):

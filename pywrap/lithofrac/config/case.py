@@ -6,7 +6,8 @@ from typing import Literal
 
 from pydantic import Field, ValidationError, model_validator
 
-from lithofrac.config.base import MM, NonNegative, Section
+from lithofrac.config.base import MM, Coordinate, Section
+from lithofrac.config.element_count import MOST_ELEMENTS, element_count
 from lithofrac.config.errors import ConfigError, sentences
 from lithofrac.config.extend import Draft, nested, read_draft
 from lithofrac.config.loading import Loading, TractionLoading, VelocityLoading
@@ -20,7 +21,7 @@ class DampingSection(Section):
 
     fraction: float = Field(default=0.3, ge=0.0, lt=1.0)
     """Fraction of critical damping of the lowest frequency; 0 is none."""
-    alpha_1_s: NonNegative | None = None
+    alpha_1_s: float | None = Field(default=None, ge=0.0, le=1e12)
     """A fixed factor alpha instead of one from the lowest frequency found at run time."""
     relative_to: Literal["affine", "ground"] = "affine"
     """Damp the motion relative to the affine fit of each body, or all motion (eq. 3)."""
@@ -29,24 +30,24 @@ class DampingSection(Section):
 class MeshSection(Section):
     """Which of the many meshes of equal density is taken."""
 
-    seed: int = Field(default=1, ge=1, lt=2**31)
+    seed: int = Field(default=1, ge=1, le=2**31 - 1)
     """Realisation; each seed gives another mesh, always the same one."""
 
 
 class Output(Section):
     """What a run writes."""
 
-    records: int = Field(default=1000, ge=2)
+    records: int = Field(default=1000, ge=2, le=10_000_000)
     """Rows of the history."""
-    fields: int = Field(default=5, ge=0)
+    fields: int = Field(default=5, ge=0, le=10_000)
     """Frames of the fields, 0 for none."""
 
 
 class Probe(Section):
     """A point; the element whose centroid is nearest to it is recorded."""
 
-    x_mm: float
-    y_mm: float
+    x_mm: Coordinate
+    y_mm: Coordinate
 
     @property
     def point(self) -> tuple[float, float]:
@@ -63,7 +64,7 @@ class Case(Section):
     loading: Loading
     damping: DampingSection = DampingSection()
     mesh: MeshSection = MeshSection()
-    time_step_factor: float = Field(default=0.9, gt=0.0, le=1.0)
+    time_step_factor: float = Field(default=0.9, ge=1e-6, le=1.0)
     """Time step over the exact limit of the most critical element."""
     probes: dict[str, Probe] = Field(default_factory=dict)
     """Points to record, beside those that the scene has anyway."""
@@ -72,6 +73,7 @@ class Case(Section):
     @model_validator(mode="after")
     def _parts_fit_together(self):
         problems = [*_loading_problems(self.scene, self.loading), *_size_problems(self)]
+        problems += _count_problems(self.scene)
         if problems:
             raise ValueError("\n".join(problems))
         return self
@@ -174,6 +176,18 @@ def _size_problems(case: Case) -> list[str]:
         return []
     key = SIZE_KEYS.get(case.scene.kind, "element_size_mm")
     return [f"scene.{key} = {getattr(case.scene, key):g}: {too_large(case.material, width)}"]
+
+
+def _count_problems(scene: Scene) -> list[str]:
+    """Refuse meshes that would take hours or all memory, before gmsh is started."""
+    count = element_count(scene)
+    if count <= MOST_ELEMENTS:
+        return []
+    key = "wall_elements_per_radius" if scene.kind == "hole_quarter" else "element_size_mm"
+    return [
+        f"scene.{key} = {getattr(scene, key):g}: about {count:.2g} elements, expected at most "
+        f"{MOST_ELEMENTS}"
+    ]
 
 
 def too_large(material: Material, width: float) -> str:

@@ -60,7 +60,41 @@ def _sentence(key: str, item: dict, section: type[BaseModel] | None) -> str:
     shown = f"{key} = {value}" if isinstance(value, (bool, int, float, str)) else key
     if kind == "literal_error" and isinstance(value, str):
         return f"{shown}: unknown word, {suggestion(value, _words(context['expected']))}"
-    return f"{shown}: expected {_expected(kind, context)}"
+    field = section.model_fields.get(item["loc"][-1]) if section else None
+    span = _range(field.annotation, field.metadata) if field and kind in BOUNDS else ""
+    return f"{shown}: expected {span or _expected(kind, context)}"
+
+
+BOUNDS = {
+    "greater_than": ("above", "gt"),
+    "greater_than_equal": ("not below", "ge"),
+    "less_than": ("below", "lt"),
+    "less_than_equal": ("not above", "le"),
+}  # pydantic's kind of error -> words, name of the bound
+
+
+def _range(annotation: Any, metadata: list) -> str:
+    """Words for the range of a number, from the bounds of its field; empty when it has none."""
+    if get_origin(annotation) in (Union, UnionType):
+        inner = [part for part in get_args(annotation) if part is not type(None)]
+        return _range(inner[0], metadata)
+    if get_origin(annotation) is Annotated:
+        annotation, *more = get_args(annotation)
+        metadata = [*metadata, *more]
+    flat = [item for entry in metadata for item in getattr(entry, "metadata", [entry])]
+    bounds = {
+        name: getattr(item, name)
+        for item in flat for _, name in BOUNDS.values() if hasattr(item, name)
+    }  # fmt: skip
+    what = "a whole number" if annotation is int else "a number"
+    if set(bounds) == {"ge", "le"}:
+        return f"{what} from {_shown(bounds['ge'])} to {_shown(bounds['le'])}"
+    words = [f"{word} {_shown(bounds[name])}" for word, name in BOUNDS.values() if name in bounds]
+    return f"{what} {' and '.join(words)}" if words else ""
+
+
+def _shown(bound: Any) -> str:
+    return f"{bound:g}" if isinstance(bound, float) else str(bound)
 
 
 def _words(expected: str) -> list[str]:
@@ -85,10 +119,7 @@ def _expected(kind: str, context: dict) -> str:
     if kind in plain:
         return plain[kind]
     bounds = {
-        "greater_than": ("a number above", "gt"),
-        "greater_than_equal": ("a number not below", "ge"),
-        "less_than": ("a number below", "lt"),
-        "less_than_equal": ("a number not above", "le"),
+        **{kind: (f"a number {words}", name) for kind, (words, name) in BOUNDS.items()},
         "too_short": ("at least this many items:", "min_length"),
         "too_long": ("at most this many items:", "max_length"),
         "string_too_short": ("a text of at least this many letters:", "min_length"),
@@ -96,8 +127,7 @@ def _expected(kind: str, context: dict) -> str:
     }
     if kind in bounds:
         words, name = bounds[kind]
-        bound = context[name]
-        return f"{words} {bound:g}" if isinstance(bound, float) else f"{words} {bound}"
+        return f"{words} {_shown(context[name])}"
     return kind.replace("_", " ")
 
 

@@ -8,7 +8,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lithofrac.config.base import MPA, NonNegative, Positive, Section
+from lithofrac.config.base import MPA, EndStrain, Pressure, Section, Speed, Traction
+
+Transits = Annotated[float, Field(ge=0.0, le=1e6)]
 
 
 class VelocityLoading(Section):
@@ -19,17 +21,17 @@ class VelocityLoading(Section):
     """
 
     kind: Literal["velocity"]
-    speed_m_s: Positive
+    speed_m_s: Speed
     """Speed of each end of the whole specimen."""
-    end_strain: Positive
+    end_strain: EndStrain
     """Axial strain at the end of the run, counted from the end of the confinement."""
     sense: Literal["shorten", "stretch"] = "shorten"
     """Compression or tension."""
-    confinement_MPa: NonNegative = 0.0
+    confinement_MPa: Pressure = 0.0
     """Lateral pressure at the start of axial loading."""
-    lateral_stiffness_over_young: NonNegative = 0.0
+    lateral_stiffness_over_young: float = Field(default=0.0, ge=0.0, le=1e3)
     """Stiffness of the lateral platens: rise of pressure per lateral strain, over E of the rock."""
-    ramp_transits: Positive = 5.0
+    ramp_transits: float = Field(default=5.0, ge=1e-3, le=1e6)
     """Shortest duration of each ramp."""
 
     @property
@@ -47,11 +49,11 @@ class TractionLoading(Section):
     """Uniform pressure on the loaded end, smoothly raised and then held."""
 
     kind: Literal["traction"]
-    stress_MPa: float
+    stress_MPa: Traction
     """Axial stress, compression positive."""
-    ramp_transits: NonNegative = 20.0
+    ramp_transits: Transits = 20.0
     """Duration of the ramp; 0 is a jump."""
-    hold_transits: NonNegative = 20.0
+    hold_transits: Transits = 20.0
     """Time at full stress before the run ends."""
 
     @property

@@ -13,14 +13,23 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
 
-from lithofrac.config.base import GPA, MPA, NonNegative, Positive, Section
+from lithofrac.config.base import (
+    GPA,
+    MPA,
+    Density,
+    FractureEnergy,
+    Modulus,
+    PlasticStrain,
+    Pressure,
+    Section,
+    Strength,
+)
 from lithofrac.config.errors import ConfigError, sentences, suggestion
 from lithofrac.config.yaml_file import read_yaml
 
 PACKAGED = Path(__file__).parents[1] / "_configs"  # copy of configs/ that is installed
 
 Angle = Annotated[float, Field(ge=0.0, lt=90.0)]
-Column = tuple[NonNegative, ...]
 Angles = tuple[Angle, ...]
 COLUMNS = ("plastic_strain", "cohesion_MPa", "friction_angle_deg", "dilation_angle_deg")
 TENSION = ("tensile_strength_MPa", "fracture_energy_J_m2")
@@ -41,15 +50,19 @@ class Material(Section):
     """No yield check at all; the strength keys may then be left out."""
     compression: bool = True
     """Mohr-Coulomb planes in force; `false` leaves tension alone and needs no table."""
-    young_modulus_GPa: Positive
+    young_modulus_GPa: Modulus
     poisson_ratio: float = Field(ge=0.0, lt=0.5)
-    density_kg_m3: Positive
-    tensile_strength_MPa: Positive | None = Field(default=None, validate_default=True)
-    fracture_energy_J_m2: Positive | None = Field(default=None, validate_default=True)
+    density_kg_m3: Density
+    tensile_strength_MPa: Strength | None = Field(default=None, validate_default=True)
+    fracture_energy_J_m2: FractureEnergy | None = Field(default=None, validate_default=True)
     """Energy Gf that opening a unit of crack area uses up."""
-    plastic_strain: Column | None = Field(default=None, validate_default=True, strict=False)
+    plastic_strain: tuple[PlasticStrain, ...] | None = Field(
+        default=None, validate_default=True, strict=False
+    )
     """Effective plastic strain (eq. 7), strictly increasing."""
-    cohesion_MPa: Column | None = Field(default=None, validate_default=True, strict=False)
+    cohesion_MPa: tuple[Pressure, ...] | None = Field(
+        default=None, validate_default=True, strict=False
+    )
     friction_angle_deg: Angles | None = Field(default=None, validate_default=True, strict=False)
     dilation_angle_deg: Angles | None = Field(default=None, validate_default=True, strict=False)
     hardening: Literal["compressive", "total"] = "compressive"

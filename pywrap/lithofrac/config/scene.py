@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lithofrac.config.base import MM, Positive, Section
+from lithofrac.config.base import MM, Length, Section
 
 
 class SingleElement(Section):
@@ -18,7 +18,7 @@ class SingleElement(Section):
     """
 
     kind: Literal["single_element"]
-    size_mm: Positive
+    size_mm: Length
     """Length of both legs."""
     axisymmetric: bool = True
     """Triaxial test; `false` is plane strain."""
@@ -37,8 +37,8 @@ class SingleElement(Section):
 class Specimen(Section):
     """What all uniformly meshed, upright specimens share."""
 
-    height_mm: Positive
-    element_size_mm: Positive
+    height_mm: Length
+    element_size_mm: Length
     """Nominal edge length of the elements."""
     structured: bool = False
     """Rows of equal right-angled triangles instead of an unstructured mesh."""
@@ -58,7 +58,7 @@ class Triaxial(Specimen):
     """Cylinder under fluid pressure, axisymmetric (Klerck 2004, Fig. 8c)."""
 
     kind: Literal["triaxial"]
-    diameter_mm: Positive
+    diameter_mm: Length
     whole_height: bool = False
     """Mesh the whole height; `false` meshes the upper half, as the paper does."""
 
@@ -72,7 +72,7 @@ class PlaneStrain(Specimen):
     """Prism between two lateral platens, plane strain (Klerck 2004, Fig. 8a)."""
 
     kind: Literal["plane_strain"]
-    width_mm: Positive
+    width_mm: Length
 
     @property
     def width(self) -> float:
@@ -88,12 +88,12 @@ class HoleQuarter(Section):
     """
 
     kind: Literal["hole_quarter"]
-    hole_radius_mm: Positive
-    block_over_radius: float = Field(default=8.0, gt=2.0)
+    hole_radius_mm: Length
+    block_over_radius: float = Field(default=8.0, gt=2.0, le=1e4)
     """Width and height of the whole block, in hole radii."""
-    wall_elements_per_radius: float = Field(default=12.0, ge=1.0)
+    wall_elements_per_radius: float = Field(default=12.0, ge=1.0, le=1e4)
     """Elements on a length of one radius at the wall of the hole."""
-    far_elements_per_radius: float = Field(default=3.0, gt=0.0)
+    far_elements_per_radius: float = Field(default=3.0, ge=1e-2, le=1e4)
     """The same at the outer faces."""
 
     @property
@@ -121,7 +121,7 @@ class Bar(Specimen):
     """Upright bar on a frictionless base, plane strain; for waves and crack bands."""
 
     kind: Literal["bar"]
-    width_mm: Positive
+    width_mm: Length
     structured: bool = True
     """Rows of equal right-angled triangles instead of an unstructured mesh."""
     laterally_fixed: bool = False

@@ -1,10 +1,8 @@
 """Keys from the command line, and a case written back as YAML."""
 
-import yaml
-
+from lithofrac.config import yaml_file
 from lithofrac.config.case import Case
 from lithofrac.config.errors import ConfigError
-from lithofrac.config.yaml_file import parsed
 
 
 def settings(words: list[str]) -> dict:
@@ -20,10 +18,10 @@ def settings(words: list[str]) -> dict:
         key, equals, text = word.partition("=")
         if not key or not equals:
             raise ConfigError(f"--set {word}: expected KEY=VALUE")
-        found[key.strip()] = parsed(text, f"--set {key}")
+        found[key.strip()] = yaml_file.parsed(text, f"--set {key}")
     return found
 
 
 def text_of(case: Case) -> str:
     """The case with all its values in force, as the text of a case file."""
-    return yaml.safe_dump(case.resolved(), sort_keys=False, allow_unicode=True)
+    return yaml_file.text_of(case.resolved())

@@ -1,7 +1,8 @@
 """Read one YAML file into plain Python, or say in one sentence why not.
 
-The loader builds no objects (safe), refuses a key that stands twice in one mapping, and reads
-`1e-3` as a number, which YAML 1.1 takes for a text.
+The loader builds no objects (safe), refuses a key that stands twice in one mapping, and takes for
+numbers what the core schema of YAML 1.2 does (section 10.3.2), in decimal: `1e-3` and `1.e3` are
+numbers and `010` is ten. In YAML 1.1 these are a text, a text and eight, and `1:30` is ninety.
 """
 
 import re
@@ -12,9 +13,41 @@ import yaml
 
 from lithofrac.config.errors import ConfigError
 
+INT, FLOAT = "tag:yaml.org,2002:int", "tag:yaml.org,2002:float"
+NUMBERS = {
+    INT: re.compile(r"[-+]?[0-9]+\Z"),
+    FLOAT: re.compile(
+        r"(?:[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?"
+        r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))\Z"
+    ),
+}  # in the order in which they are tried
+
+
+def _resolvers() -> dict:
+    """First letter -> tags and their patterns: those of PyYAML with other numbers."""
+    found = {
+        first: [(tag, pattern) for tag, pattern in pairs if tag not in NUMBERS]
+        for first, pairs in yaml.SafeLoader.yaml_implicit_resolvers.items()
+    }
+    for first in "-+.0123456789":
+        found[first] = [*found.get(first, []), *NUMBERS.items()]
+    return found
+
 
 class _Loader(yaml.SafeLoader):
-    """The safe loader with unique keys and floats as in YAML 1.2."""
+    """The safe loader with unique keys and numbers as in YAML 1.2."""
+
+    yaml_implicit_resolvers = _resolvers()
+
+
+class _Dumper(yaml.SafeDumper):
+    """Quotes the texts that `_Loader` would take for numbers."""
+
+    yaml_implicit_resolvers = _resolvers()
+
+
+def _decimal(loader: _Loader, node: yaml.ScalarNode) -> int:
+    return int(loader.construct_scalar(node))
 
 
 def _unique_mapping(loader: _Loader, node: yaml.MappingNode, deep: bool = False) -> dict:
@@ -32,9 +65,12 @@ def _unique_mapping(loader: _Loader, node: yaml.MappingNode, deep: bool = False)
 
 
 _Loader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _unique_mapping)
-_Loader.add_implicit_resolver(
-    "tag:yaml.org,2002:float", re.compile(r"^[-+]?[0-9]+[eE][-+]?[0-9]+$"), list("-+0123456789")
-)
+_Loader.add_constructor(INT, _decimal)
+
+
+def text_of(values: dict) -> str:
+    """YAML that `parsed` reads back as the same values; keys keep their order."""
+    return yaml.dump(values, Dumper=_Dumper, sort_keys=False, allow_unicode=True)
 
 
 def read_yaml(path: Path) -> dict:

@@ -49,20 +49,31 @@ def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> 
         When the kind or format is unknown, an input is missing, or a data file is wrong.
     """
     data = Path("data") if data is None else data
-    missing = [str(path) for path in inputs if not Path(path).exists()]
-    if missing:
-        raise DataError(f"{missing[0]}: no such file or folder, expected an input of the plot")
     known = TABLES if out.suffix == ".csv" else FIGURES
     if out.suffix not in (*FORMATS, ".csv"):
         raise DataError(
             f"{out}: format {out.suffix!r}, expected one of {', '.join((*FORMATS, '.csv'))}"
         )
     if kind not in known:
-        what = "table" if known is TABLES else "figure"
-        raise DataError(f"plot: no {what} {kind!r}, expected one of {', '.join(known)}")
+        what, suffixes, other = "figure", ".csv", TABLES
+        if known is TABLES:
+            what, suffixes, other = "table", "/".join(FORMATS), FIGURES
+        raise DataError(
+            f"plot: no {what} {kind!r}, expected one of {', '.join(known)}; "
+            f"with --out *{suffixes}: {', '.join(other)}"
+        )
+    missing = [str(path) for path in inputs if not Path(path).exists()]
+    if missing:
+        raise DataError(f"{missing[0]}: no such file or folder, expected an input of the plot")
     if known is FIGURES and not inputs:
         raise DataError(f"plot {kind}: no input, expected results folders or files to draw")
-    made = known[kind](inputs, data)
+    try:
+        made = known[kind](inputs, data)
+    except FileNotFoundError as error:  # an input that lies in no results folder
+        raise DataError(
+            f"plot {kind}: {error.filename or error}: no such file, expected an input in a results "
+            "folder of `lithofrac run`"
+        ) from None
     if known is FIGURES:
         style.save(made, out)
         return

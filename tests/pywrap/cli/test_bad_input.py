@@ -43,7 +43,7 @@ def changed(text: str, old: str, new: str) -> str:
         (
             "material: sandstone",
             "material: {extends: sandstone, young_modulus_GPa: -28}",
-            "material.young_modulus_GPa = -28: expected a number above 0",
+            "material.young_modulus_GPa = -28: expected a number from 1e-06 to 1e+07",
         ),
         (
             "element_size_mm: 0.5",
@@ -81,7 +81,7 @@ def test_a_wrong_case_file(refused, tmp_path, old, new, message):
         (
             "poisson_ratio: 0.25",
             "poisson_ratio: 0.5",
-            "material.poisson_ratio = 0.5: expected a number below 0.5",
+            "material.poisson_ratio = 0.5: expected a number not below 0 and below 0.5",
         ),
         (
             "friction_angle_deg: [17.0",
@@ -144,15 +144,67 @@ def test_all_mistakes_of_a_file_come_one_a_line(refused, tmp_path):
     path.write_text(TRIAXIAL.replace("speed_m_s: 0.1", "speed_m_s: -1").replace("30.0", "tall"))
     assert refused(path) == (
         f"lithofrac: {path}: scene.height_mm = tall: expected a number\n"
-        f"lithofrac: {path}: loading.speed_m_s = -1: expected a number above 0\n"
+        f"lithofrac: {path}: loading.speed_m_s = -1: expected a number from 1e-09 to 10000\n"
     )
 
 
 def test_a_wrong_override_is_named_as_such(refused, tmp_path):
     assert refused("kirsch", "--set", "scene.hole_radius_mm=0") == (
-        "lithofrac: command line: scene.hole_radius_mm = 0: expected a number above 0\n"
+        "lithofrac: command line: scene.hole_radius_mm = 0: expected a number from 0.001 to 1e+07\n"
     )
     assert refused("kirsch", "--set", "radius") == "lithofrac: --set radius: expected KEY=VALUE\n"
+
+
+@pytest.mark.parametrize(
+    ("case", "key", "value", "expected"),
+    [
+        ("bar_wave", "material.density_kg_m3", "1e-300", "a number from 0.001 to 1e+06"),
+        ("bar_wave", "material.young_modulus_GPa", "1e305", "a number from 1e-06 to 1e+07"),
+        ("kirsch", "material.tensile_strength_MPa", "1e-300", "a number from 1e-06 to 1e+06"),
+        ("bar_wave", "scene.height_mm", "1e-300", "a number from 0.001 to 1e+07"),
+        ("bar_wave", "scene.height_mm", "1e300", "a number from 0.001 to 1e+07"),
+        ("bar_wave", "scene.width_mm", "1e9", "a number from 0.001 to 1e+07"),
+        ("bar_wave", "scene.element_size_mm", "1e-9", "a number from 0.001 to 1e+07"),
+        ("sandstone_triaxial_p10", "loading.speed_m_s", "1e300", "a number from 1e-09 to 10000"),
+        ("sandstone_triaxial_p10", "loading.end_strain", "1e300", "a number not below 1e-09 and"),
+        ("sandstone_triaxial_p10", "loading.end_strain", "5.0", "a number not below 1e-09 and"),
+        ("bar_wave", "mesh.seed", "99999999999999999999", "a whole number from 1 to 2147483647"),
+    ],
+)
+def test_numbers_that_no_specimen_has(refused, case, key, value, expected):
+    said = refused(case, "--set", f"{key}={value}")
+    assert said.startswith(f"lithofrac: command line: {key} = ")
+    assert f": expected {expected}" in said
+    assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("case", "key", "value"),
+    [
+        ("bar_wave", "scene.element_size_mm", "0.001"),
+        ("sandstone_triaxial_p10", "scene.element_size_mm", "0.005"),
+        ("kirsch", "scene.wall_elements_per_radius", "10000"),
+    ],
+)
+def test_meshes_that_no_machine_holds(refused, case, key, value):
+    far = ["--set", "scene.far_elements_per_radius=10000"] if case == "kirsch" else []
+    said = refused(case, "--set", f"{key}={value}", *far)
+    assert said.startswith(f"lithofrac: command line: {key} = {value}: about ")
+    assert said.endswith(" elements, expected at most 2000000\n")
+
+
+@pytest.mark.parametrize(
+    ("case", "key", "value"),
+    [
+        ("single_element_sandstone", "loading.speed_m_s", "1e-09"),
+        ("bar_wave", "loading.hold_transits", "1e+06"),
+    ],
+)
+def test_runs_that_never_end(refused, monkeypatch, case, key, value):
+    monkeypatch.setattr("lithofrac.cli.MOST_STEPS", 1_000_000)
+    said = refused(case, "--set", f"{key}={value}")
+    assert said.startswith(f"lithofrac: {case}: {key} = {value}: the run takes ")
+    assert said.endswith(" steps, expected at most 1000000\n")
 
 
 def test_a_mesh_file_that_is_none(refused, tmp_path):

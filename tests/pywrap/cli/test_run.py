@@ -189,10 +189,16 @@ def test_several_confinements_do_not_fit_into_a_file(tmp_path, capsys):
             "test 'torsion': expected one of triaxial, plane_strain, extension, tension, "
             "stiff_confinement",
         ),
-        (["--end-strain", "nan"], "--end-strain nan: expected a number above 0"),
-        (["--end-strain", "-1"], "--end-strain -1: expected a number above 0"),
-        (["--stiffness", "inf"], "--stiffness inf: expected a number not below 0"),
-        (["--confinement-MPa", "-1"], "confinement_MPa = -1 makes no sense in test 'triaxial'"),
+        (["--end-strain", "nan"], "--end-strain nan: expected a number between 0 and 1"),
+        (["--end-strain", "-1"], "--end-strain -1: expected a number between 0 and 1"),
+        (["--stiffness", "inf"], "--stiffness inf: expected a number from 0 to 1000"),
+        (["--end-strain", "5"], "--end-strain 5: expected a number between 0 and 1"),
+        (["--confinement-MPa", "-1"], "--confinement-MPa -1: expected a number from 0 to 1e+06"),
+        (["--confinement-MPa", "inf"], "--confinement-MPa inf: expected a number from 0 to 1e+06"),
+        (
+            ["--confinement-MPa", "0", "1e308"],
+            "--confinement-MPa 1e+308: expected a number from 0 to 1e+06",
+        ),
     ],
 )
 def test_a_point_that_makes_no_sense_is_refused(tmp_path, capsys, words, message):

@@ -95,8 +95,14 @@ def test_packaged_materials_are_found_from_any_folder(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"young_modulus_GPa": -28.0}, "young_modulus_GPa = -28.0: expected a number above 0"),
-        ({"poisson_ratio": 0.5}, "poisson_ratio = 0.5: expected a number below 0.5"),
+        (
+            {"young_modulus_GPa": -28.0},
+            "young_modulus_GPa = -28.0: expected a number from 1e-06 to 1e+07",
+        ),
+        (
+            {"poisson_ratio": 0.5},
+            "poisson_ratio = 0.5: expected a number not below 0 and below 0.5",
+        ),
         ({"density_kg_m3": float("nan")}, "density_kg_m3 = nan: expected a finite number"),
         ({"density_kg_m3": float("inf")}, "density_kg_m3 = inf: expected a finite number"),
         ({"density_kg_m3": "heavy"}, "density_kg_m3 = heavy: expected a number"),

@@ -3,7 +3,7 @@
 import pytest
 
 from lithofrac.config import ConfigError
-from lithofrac.config.yaml_file import read_yaml
+from lithofrac.config.yaml_file import parsed, read_yaml, text_of
 
 pytestmark = pytest.mark.no_core
 
@@ -22,6 +22,40 @@ def refusal(path) -> str:
 def test_a_number_with_a_bare_exponent_is_a_number(file):
     file.write_text("a: 1e-3\nb: -2E6\nc: 1.5\nd: 3\ne: x1e3\n")
     assert read_yaml(file) == {"a": 1e-3, "b": -2e6, "c": 1.5, "d": 3, "e": "x1e3"}
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("010", 10),
+        ("-08", -8),
+        ("+3", 3),
+        ("1.0e9", 1e9),
+        ("1.e3", 1e3),
+        ("1E+3", 1e3),
+        (".5", 0.5),
+        ("5.", 5.0),
+        ("09.5", 9.5),
+        ("-.inf", float("-inf")),
+        ("1:30", "1:30"),
+        ("1:30.5", "1:30.5"),
+        ("1_000", "1_000"),
+        ("0x10", "0x10"),
+        ("0b11", "0b11"),
+        ("1.2.3", "1.2.3"),
+        (".", "."),
+        ("-", [None]),
+    ],
+)
+def test_numbers_are_those_of_yaml_1_2(text, value):
+    assert parsed(text, "a") == value
+    assert type(parsed(text, "a")) is type(value)
+
+
+@pytest.mark.parametrize("value", ["1e3", "010", "1.e3", "1:30", "true", 1e-5, 1e22, 3, -0.5, "ü"])
+def test_what_is_written_is_read_back(value):
+    read = parsed(text_of({"a": value}), "a")["a"]
+    assert (type(read), read) == (type(value), value)
 
 
 @pytest.mark.parametrize(

@@ -103,6 +103,21 @@ def test_the_hole_is_loaded_on_top_with_symmetry_below_and_at_the_left(problem_o
     assert problem.mesh.nodes[top.edges, 1] == pytest.approx(0.1)
 
 
+def test_a_probe_far_outside_is_refused(problem_of):
+    case, _ = problem_of("sandstone_triaxial_p10")
+    outside = case.scene.diameter_mm / 2
+    mesh = make_mesh(case)
+    size = case.scene.element_size_mm
+    for away, accepted in ((0.5 * size, True), (3.0 * size, False)):
+        near = {"probes.far": {"x_mm": outside + away, "y_mm": 10.0}}
+        moved = find_case("sandstone_triaxial_p10", None, near)
+        if accepted:
+            assert "far" in make_problem(moved, mesh).probes
+            continue
+        with pytest.raises(ConfigError, match=r"^probes\.far = .* mm outside of the body"):
+            make_problem(moved, mesh)
+
+
 def test_a_case_may_add_probes(problem_of):
     _, problem = problem_of("bar_wave")
     assert set(problem.probes) == {"centre", "middle"}

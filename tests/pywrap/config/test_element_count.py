@@ -1,0 +1,27 @@
+"""Estimate of the number of elements (pywrap/lithofrac/config/element_count.py)."""
+
+import pytest
+
+from lithofrac.config import find_case
+from lithofrac.config.element_count import element_count
+from lithofrac.scenes import make_mesh
+
+pytestmark = pytest.mark.no_core
+
+
+@pytest.mark.parametrize(
+    ("name", "overrides"),
+    [
+        ("bar_wave", {}),
+        ("kirsch", {}),
+        ("kirsch", {"scene.far_elements_per_radius": 1.0}),
+        ("sandstone_triaxial_p00", {}),
+        ("sandstone_triaxial_p00", {"scene.whole_height": True}),
+        ("sandstone_plane_strain_p00", {"scene.element_size_mm": 1.0}),
+        ("single_element_sandstone", {}),
+    ],
+)
+def test_the_estimate_is_that_of_the_mesh(name, overrides):
+    case = find_case(name, None, overrides)
+    made = len(make_mesh(case).triangles)
+    assert element_count(case.scene) == pytest.approx(made, rel=0.25)
