@@ -50,7 +50,7 @@ def _single_elements(paths: list[Path], data: Path, bands: pd.Series) -> list[di
                 "case": f"single element, {rock.replace('_', ' ')}, {test}",
                 "quantity": f"strength at {worst['confinement_MPa']:g} MPa,"
                 f" worst of {len(group)} confinements",
-                "expected": f"{worst['closed_form_MPa']:.1f} MPa (closed form of Table 1)",
+                "expected": f"{worst['closed_form_strength_MPa']:.1f} MPa (closed form of Table 1)",
                 "measured": "-",
                 "computed": f"{worst['strength_MPa']:.1f} MPa",
                 **_judged(worst["difference_percent"], band),

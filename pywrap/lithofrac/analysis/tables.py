@@ -38,24 +38,29 @@ SUMMARY = (
 
 
 def single_element(inputs: list[Path], data: Path) -> pd.DataFrame:
-    """Peaks of the triaxial material-point curves beside their closed form."""
+    """First yield, peak and end of the triaxial material-point curves beside their closed form.
+
+    Columns `closed_form_*` follow from the hardening table alone, all others from the curve.
+    """
     rows = []
     for curve in find_bench(inputs, "triaxial"):
         table, pressure = curve.material.table, curve.confinement_MPa * MPA
         peak, _ = peak_strength(table, pressure)
-        computed = float(curve.curve["axial_stress_MPa"].max())
         at_peak = curve.curve.loc[curve.curve["axial_stress_MPa"].idxmax()]
+        computed = float(at_peak["axial_stress_MPa"])
         rows.append(
             {
                 "rock": curve.rock,
                 "test": curve.test,
                 "confinement_MPa": curve.confinement_MPa,
-                "closed_form_MPa": peak / MPA,
                 "strength_MPa": computed,
+                "closed_form_strength_MPa": peak / MPA,
                 "difference_percent": 100.0 * (computed * MPA / peak - 1.0),
                 "strain_at_peak_percent": 100.0 * at_peak["axial_strain"],
-                "first_yield_MPa": first_yield(table, pressure) / MPA,
-                "residual_MPa": residual_strength(table, pressure) / MPA,
+                "first_yield_MPa": curve.first_yield_MPa,
+                "closed_form_first_yield_MPa": first_yield(table, pressure) / MPA,
+                "residual_MPa": round(curve.residual_MPa, 9),
+                "closed_form_residual_MPa": residual_strength(table, pressure) / MPA,
             }
         )
     return pd.DataFrame(rows)

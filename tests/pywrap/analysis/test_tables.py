@@ -1,6 +1,7 @@
 """Numbers behind the figures, from results with a strength known exactly (analysis/tables.py)."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from lithofrac.analysis import tables
@@ -37,6 +38,26 @@ def test_single_element_meets_its_closed_form(make_bench, data_folder):
     table = tables.single_element(paths, data_folder)
     np.testing.assert_allclose(table["difference_percent"], [0.0, -1.0], atol=1e-9)
     assert list(table["rock"]) == ["quartzite", "sandstone"]
+
+
+def test_first_yield_and_residual_are_those_of_the_curve(make_bench, data_folder):
+    """A curve that yields at 60 and ends at 7 MPa, unlike the closed form of its rock."""
+    path = make_bench("sandstone", 0)
+    curve = pd.read_parquet(path).iloc[:5]
+    curve["plastic_strain"] = [0.0, 0.0, 1e-4, 3e-4, 9e-4]
+    curve["axial_stress_MPa"] = [0.0, 59.0, 62.0, 66.0, 7.0]
+    curve.to_parquet(path)
+    row = tables.single_element([path], data_folder).iloc[0]
+    assert row["first_yield_MPa"] == pytest.approx(60.0)
+    assert row["residual_MPa"] == 7.0
+    assert row["closed_form_first_yield_MPa"] == pytest.approx(54.06, abs=0.005)
+    assert row["closed_form_residual_MPa"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_curve_that_stays_elastic_has_no_first_yield(make_bench, data_folder):
+    path = make_bench("sandstone", 0)
+    pd.read_parquet(path).assign(plastic_strain=0.0).to_parquet(path)
+    assert np.isnan(tables.single_element([path], data_folder)["first_yield_MPa"].iloc[0])
 
 
 def test_table_1_quartzite_leaves_the_range_of_tautona_at_high_confinement(make_bench, data_folder):
