@@ -28,6 +28,7 @@ STIFF = expand(BENCH, rock="sandstone", test="stiff_confinement")
 TABLES = {
     "results": ["reports/bands.csv", QUARTZITE, *RUNS, *CURVES, *STIFF],
     "single_element": CURVES,
+    "options": [QUARTZITE, "configs/materials/sandstone.yaml"],
     "strength": SANDSTONE,
     "errors": SANDSTONE,
     "tautona": [QUARTZITE],
@@ -167,6 +168,7 @@ rule plot_suite:
 rule table:
     input:
         DRAWING,
+        lambda wildcards: CORE if wildcards.table == "options" else [],  # it drives the point itself
         sources=lambda wildcards: TABLES[wildcards.table],
     output:
         f"{OUT}/tables/{{table}}.csv",
