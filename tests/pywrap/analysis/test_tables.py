@@ -1,10 +1,14 @@
 """Numbers behind the figures, from results with a strength known exactly (analysis/tables.py)."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 import pytest
+import yaml
 
 from lithofrac.analysis import tables
+from lithofrac.analysis.kirsch_series import plate
 from lithofrac.analysis.runs import Run
 
 pytestmark = pytest.mark.no_core
@@ -112,6 +116,28 @@ def test_strengths_of_figure_10_are_compared_between_the_confinements_run(make_r
     )
     table = tables.errors(runs, data)
     assert table[table["figure"] == "10"]["rms_MPa"].iloc[0] == pytest.approx(3.0)
+
+
+def test_hoop_stress_is_held_against_the_plate_of_the_blocks_own_width(
+    tmp_path, monkeypatch, data_folder
+):
+    """Elements at crown and sidewall that hold 1.1 times the stress of the finite plate."""
+    centres = np.array([[0.0, 26e-3], [26e-3, 0.0]])  # [m], hole of 25 mm
+    exact = plate(4.0, 4.0).stress(*centres.T / 25e-3)
+    folder = tmp_path / "kirsch"
+    folder.mkdir()
+    hoop = {"stress_xx_MPa": -2.2 * exact[0], "stress_yy_MPa": -2.2 * exact[1]}
+    probes = {"probe": ["crown", "sidewall"], "element": [0, 1], **hoop}
+    pd.DataFrame(probes).to_parquet(folder / "probes.parquet")
+    scene = {"kind": "hole_quarter", "hole_radius_mm": 25.0, "block_over_radius": 8.0}
+    case = {"scene": scene, "loading": {"stress_MPa": 2.0}}
+    (folder / "case.yaml").write_text(yaml.safe_dump(case))
+    mesh = SimpleNamespace(centroids=lambda: centres)
+    monkeypatch.setattr(tables.Mesh, "load", lambda path: mesh)
+    table = tables.kirsch([folder], data_folder).set_index("point")
+    np.testing.assert_allclose(table["difference_percent"], 10.0)
+    assert table.loc["sidewall", "finite_plate"] > table.loc["sidewall", "infinite_plate"] > 2.5
+    assert table.loc["crown", "finite_plate"] < table.loc["crown", "infinite_plate"] < -0.5
 
 
 def test_run_time_lists_what_the_summary_holds(make_run, data_folder):
