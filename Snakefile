@@ -180,6 +180,20 @@ rule table:
         "lithofrac plot {wildcards.table} {input.sources} --out {output} > {log} 2>&1"
 
 
+rule pages:
+    # Asked for by name only: refreshes what is committed, README.md, the sheets and its picture.
+    input:
+        f"{OUT}/report.md",
+        f"{OUT}/figures/sandstone.png",
+    params:
+        pages=["README.md", *sorted(map(str, Path("reports/sheets").glob("*.md")))],
+    message:
+        "Fill README.md and the sheets"
+    shell:
+        "for page in {params.pages}; do lithofrac report {OUT} --out $page || exit 1; done &&"
+        " mkdir -p reports/gallery && cp {OUT}/figures/sandstone.png reports/gallery/"
+
+
 rule summary:
     input:
         expand(f"{OUT}/tables/{{table}}.csv", table=TABLES),
