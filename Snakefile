@@ -28,6 +28,7 @@ STIFF = expand(BENCH, rock="sandstone", test="stiff_confinement")
 TABLES = {
     "results": ["reports/bands.csv", QUARTZITE, *RUNS, *CURVES, *STIFF],
     "single_element": CURVES,
+    "options": [QUARTZITE, "configs/materials/sandstone.yaml"],
     "strength": SANDSTONE,
     "errors": SANDSTONE,
     "tautona": [QUARTZITE],
@@ -167,6 +168,7 @@ rule plot_suite:
 rule table:
     input:
         DRAWING,
+        lambda wildcards: CORE if wildcards.table == "options" else [],  # it drives the point itself
         sources=lambda wildcards: TABLES[wildcards.table],
     output:
         f"{OUT}/tables/{{table}}.csv",
@@ -176,6 +178,20 @@ rule table:
         "Write the table {wildcards.table}"
     shell:
         "lithofrac plot {wildcards.table} {input.sources} --out {output} > {log} 2>&1"
+
+
+rule pages:
+    # Asked for by name only: refreshes what is committed, README.md, the sheets and its picture.
+    input:
+        f"{OUT}/report.md",
+        f"{OUT}/figures/sandstone.png",
+    params:
+        pages=["README.md", *sorted(map(str, Path("reports/sheets").glob("*.md")))],
+    message:
+        "Fill README.md and the sheets"
+    shell:
+        "for page in {params.pages}; do lithofrac report {OUT} --out $page || exit 1; done &&"
+        " mkdir -p reports/gallery && cp {OUT}/figures/sandstone.png reports/gallery/"
 
 
 rule summary:

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from kirsch_series import plate
 
+from lithofrac.analysis.kirsch_series import plate
 from lithofrac.config.case import Case, load_case
 from lithofrac.core import Energy, Run
 from lithofrac.problem import Mesh

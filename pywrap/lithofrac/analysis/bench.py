@@ -50,6 +50,24 @@ class Bench:
         return first_peak(self.curve["axial_strain"], self.curve["axial_stress_MPa"])
 
     @property
+    def first_yield_MPa(self) -> float:
+        """Axial stress at which the plastic strain leaves 0; NaN without two plastic rows.
+
+        From the first two plastic rows back to no plastic strain, so that the step of the curve
+        enters with its square only.
+        """
+        plastic = self.curve[self.curve["plastic_strain"] > 0.0].iloc[:2]
+        if len(plastic) < 2:
+            return float("nan")
+        (near, far), (stress, later) = plastic["plastic_strain"], plastic["axial_stress_MPa"]
+        return float(stress - near * (later - stress) / (far - near))
+
+    @property
+    def residual_MPa(self) -> float:
+        """Axial stress at the end of the curve."""
+        return float(self.curve["axial_stress_MPa"].iloc[-1])
+
+    @property
     def _name(self) -> re.Match:
         found = NAME.match(self.path.stem)
         if found is None:

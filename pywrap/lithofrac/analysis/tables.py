@@ -13,6 +13,7 @@ from lithofrac.analysis.bench import find_bench
 from lithofrac.analysis.curves import compare
 from lithofrac.analysis.fit import StrengthLine, fit_line
 from lithofrac.analysis.kirsch import infinite_plate
+from lithofrac.analysis.kirsch_series import plate
 from lithofrac.analysis.mohr_coulomb import first_yield, peak_strength, residual_strength
 from lithofrac.analysis.runs import Run, find_runs
 from lithofrac.config.material import Material
@@ -38,24 +39,29 @@ SUMMARY = (
 
 
 def single_element(inputs: list[Path], data: Path) -> pd.DataFrame:
-    """Peaks of the triaxial material-point curves beside their closed form."""
+    """First yield, peak and end of the triaxial material-point curves beside their closed form.
+
+    Columns `closed_form_*` follow from the hardening table alone, all others from the curve.
+    """
     rows = []
     for curve in find_bench(inputs, "triaxial"):
         table, pressure = curve.material.table, curve.confinement_MPa * MPA
         peak, _ = peak_strength(table, pressure)
-        computed = float(curve.curve["axial_stress_MPa"].max())
         at_peak = curve.curve.loc[curve.curve["axial_stress_MPa"].idxmax()]
+        computed = float(at_peak["axial_stress_MPa"])
         rows.append(
             {
                 "rock": curve.rock,
                 "test": curve.test,
                 "confinement_MPa": curve.confinement_MPa,
-                "closed_form_MPa": peak / MPA,
                 "strength_MPa": computed,
+                "closed_form_strength_MPa": peak / MPA,
                 "difference_percent": 100.0 * (computed * MPA / peak - 1.0),
                 "strain_at_peak_percent": 100.0 * at_peak["axial_strain"],
-                "first_yield_MPa": first_yield(table, pressure) / MPA,
-                "residual_MPa": residual_strength(table, pressure) / MPA,
+                "first_yield_MPa": curve.first_yield_MPa,
+                "closed_form_first_yield_MPa": first_yield(table, pressure) / MPA,
+                "residual_MPa": round(curve.residual_MPa, 9),
+                "closed_form_residual_MPa": residual_strength(table, pressure) / MPA,
             }
         )
     return pd.DataFrame(rows)
@@ -133,8 +139,8 @@ def zigong_fit(inputs: list[Path], data: Path) -> pd.DataFrame:
 def kirsch(inputs: list[Path], data: Path) -> pd.DataFrame:
     """Hoop stress at crown and sidewall of an elastic hole, over the stress applied.
 
-    Both are taken at the centroid of the recorded element. The infinite plate is shown for
-    orientation: a block of finite width and height has higher concentrations.
+    All are taken at the centroid of the recorded element, compression positive. The reference is
+    the plate as wide and high as the block; the infinite plate shows what its width does.
     """
     rows = []
     for run in find_runs(inputs):
@@ -146,15 +152,18 @@ def kirsch(inputs: list[Path], data: Path) -> pd.DataFrame:
             component, index = HOOP[row.probe]
             centre = mesh.centroids()[row.element]
             radius = 1e-3 * run.case["scene"]["hole_radius_mm"]
-            exact = infinite_plate(centre[None], radius)[0, index]
+            half = 0.5 * run.case["scene"]["block_over_radius"]
+            exact = float(plate(half, half).stress(*centre[:, None] / radius)[index, 0])
             computed = -getattr(row, component) / run.case["loading"]["stress_MPa"]
             rows.append(
                 {
                     "case": run.name,
                     "point": row.probe,
                     "distance_mm": 1e3 * float(np.hypot(*centre)),
-                    "infinite_plate": exact,
+                    "infinite_plate": infinite_plate(centre[None], radius)[0, index],
+                    "finite_plate": exact,
                     "computed": computed,
+                    "difference_percent": 100.0 * (computed / exact - 1.0),
                 }
             )
     return pd.DataFrame(rows)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pandas as pd
 from matplotlib.figure import Figure
 
-from lithofrac.analysis import results, tables
+from lithofrac.analysis import options, results, tables
 from lithofrac.data import DataError
 from lithofrac.plots import energy, gallery, measured, mesh, sandstone, single_element, style
 
@@ -21,6 +21,7 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "single_element": tables.single_element,
+    "options": options.options,
     "strength": tables.strength,
     "errors": tables.errors,
     "tautona": tables.tautona,

@@ -49,11 +49,15 @@ def draw_ledger(axes: Axes, run: Run) -> None:
 
 
 def draw_residual(axes: Axes, run: Run) -> None:
-    """Size of the residual over the largest external work."""
+    """Size of the residual over the largest energy of the run: internal, external or kinetic."""
     table = run.energy
-    scale = table["external_J"].abs().max() or 1.0
+    internal = table[["elastic_J", "compressive_dissipation_J", "fracture_dissipation_J"]].sum(
+        axis=1
+    )
+    parts = internal, table["external_J"], table["kinetic_J"]
+    scale = max(part.abs().max() for part in parts) or 1.0
     residual = np.maximum(table["residual_J"].abs() / scale, 1e-17)
     axes.semilogy(1e3 * table["time_s"], residual, color=style.BLACK)
     axes.axhline(1e-6, color=style.RED, ls=":", label="limit")
-    axes.set(ylabel="|residual| /\nexternal work [-]", ylim=(1e-17, 1e-4))
+    axes.set(ylabel="|residual| /\nlargest energy [-]", ylim=(1e-17, 1e-4))
     axes.legend(loc="lower right")

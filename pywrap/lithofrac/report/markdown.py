@@ -10,7 +10,8 @@ UNITS = {
     "percent": "%",
     "seconds": "s",
     "J": "J",
-}  # last part of a column name -> unit shown in brackets
+    "J_m2": "J/m²",
+}  # end of a column name -> unit shown in brackets
 
 PAGE = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{title}</title><style>
@@ -42,10 +43,10 @@ def to_html(text: str) -> str:
 
 def header(column: str) -> str:
     """`strength_min_MPa` becomes `strength min [MPa]`."""
-    *words, last = column.split("_")
-    if words and last in UNITS:
-        return f"{' '.join(words)} [{UNITS[last]}]"
-    return " ".join([*words, last])
+    for end, unit in UNITS.items():
+        if column.endswith(f"_{end}"):
+            return f"{column.removesuffix(f'_{end}').replace('_', ' ')} [{unit}]"
+    return column.replace("_", " ")
 
 
 def _row(cells: list[str]) -> str:

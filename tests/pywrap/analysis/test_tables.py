@@ -1,9 +1,14 @@
 """Numbers behind the figures, from results with a strength known exactly (analysis/tables.py)."""
 
+from types import SimpleNamespace
+
 import numpy as np
+import pandas as pd
 import pytest
+import yaml
 
 from lithofrac.analysis import tables
+from lithofrac.analysis.kirsch_series import plate
 from lithofrac.analysis.runs import Run
 
 pytestmark = pytest.mark.no_core
@@ -37,6 +42,26 @@ def test_single_element_meets_its_closed_form(make_bench, data_folder):
     table = tables.single_element(paths, data_folder)
     np.testing.assert_allclose(table["difference_percent"], [0.0, -1.0], atol=1e-9)
     assert list(table["rock"]) == ["quartzite", "sandstone"]
+
+
+def test_first_yield_and_residual_are_those_of_the_curve(make_bench, data_folder):
+    """A curve that yields at 60 and ends at 7 MPa, unlike the closed form of its rock."""
+    path = make_bench("sandstone", 0)
+    curve = pd.read_parquet(path).iloc[:5]
+    curve["plastic_strain"] = [0.0, 0.0, 1e-4, 3e-4, 9e-4]
+    curve["axial_stress_MPa"] = [0.0, 59.0, 62.0, 66.0, 7.0]
+    curve.to_parquet(path)
+    row = tables.single_element([path], data_folder).iloc[0]
+    assert row["first_yield_MPa"] == pytest.approx(60.0)
+    assert row["residual_MPa"] == 7.0
+    assert row["closed_form_first_yield_MPa"] == pytest.approx(54.06, abs=0.005)
+    assert row["closed_form_residual_MPa"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_curve_that_stays_elastic_has_no_first_yield(make_bench, data_folder):
+    path = make_bench("sandstone", 0)
+    pd.read_parquet(path).assign(plastic_strain=0.0).to_parquet(path)
+    assert np.isnan(tables.single_element([path], data_folder)["first_yield_MPa"].iloc[0])
 
 
 def test_table_1_quartzite_leaves_the_range_of_tautona_at_high_confinement(make_bench, data_folder):
@@ -91,6 +116,28 @@ def test_strengths_of_figure_10_are_compared_between_the_confinements_run(make_r
     )
     table = tables.errors(runs, data)
     assert table[table["figure"] == "10"]["rms_MPa"].iloc[0] == pytest.approx(3.0)
+
+
+def test_hoop_stress_is_held_against_the_plate_of_the_blocks_own_width(
+    tmp_path, monkeypatch, data_folder
+):
+    """Elements at crown and sidewall that hold 1.1 times the stress of the finite plate."""
+    centres = np.array([[0.0, 26e-3], [26e-3, 0.0]])  # [m], hole of 25 mm
+    exact = plate(4.0, 4.0).stress(*centres.T / 25e-3)
+    folder = tmp_path / "kirsch"
+    folder.mkdir()
+    hoop = {"stress_xx_MPa": -2.2 * exact[0], "stress_yy_MPa": -2.2 * exact[1]}
+    probes = {"probe": ["crown", "sidewall"], "element": [0, 1], **hoop}
+    pd.DataFrame(probes).to_parquet(folder / "probes.parquet")
+    scene = {"kind": "hole_quarter", "hole_radius_mm": 25.0, "block_over_radius": 8.0}
+    case = {"scene": scene, "loading": {"stress_MPa": 2.0}}
+    (folder / "case.yaml").write_text(yaml.safe_dump(case))
+    mesh = SimpleNamespace(centroids=lambda: centres)
+    monkeypatch.setattr(tables.Mesh, "load", lambda path: mesh)
+    table = tables.kirsch([folder], data_folder).set_index("point")
+    np.testing.assert_allclose(table["difference_percent"], 10.0)
+    assert table.loc["sidewall", "finite_plate"] > table.loc["sidewall", "infinite_plate"] > 2.5
+    assert table.loc["crown", "finite_plate"] < table.loc["crown", "infinite_plate"] < -0.5
 
 
 def test_run_time_lists_what_the_summary_holds(make_run, data_folder):

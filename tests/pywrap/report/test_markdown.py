@@ -15,6 +15,7 @@ pytestmark = pytest.mark.no_core
         ("rms_percent", "rms [%]"),
         ("case", "case"),
         ("energy_residual", "energy residual"),
+        ("crack_energy_at_1_mm_J_m2", "crack energy at 1 mm [J/m²]"),
     ],
 )
 def test_unit_of_a_column_stands_in_brackets(column, shown):

@@ -141,3 +141,13 @@ def test_bad_suite_stops_before_any_job(tree):
     assert done.returncode != 0
     assert "confinment_MPa" in done.stdout + done.stderr
     edited(suite, "confinment_MPa: 10", "confinement_MPa: 10")
+
+
+def test_pages_are_filled_when_they_are_asked_for_and_only_then(tree):
+    picture = tree / "reports" / "gallery" / "sandstone.png"
+    picture.unlink(missing_ok=True)
+    assert not (tree / "README.md").exists()  # the runs before have not touched it
+    done = snakemake(tree, "--cores", "2", "pages")
+    assert done.returncode == 0, done.stderr
+    assert (tree / "README.md").exists()
+    assert picture.exists()

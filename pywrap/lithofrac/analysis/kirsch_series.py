@@ -1,6 +1,6 @@
 """Elastic rectangular plate with a central hole under uniform tension, by Michell's series.
 
-Independent of the code under test. The Airy function, even in x and y,
+Independent of the finite elements. The Airy function, even in x and y,
 
     phi = A ln r + B r^2 + sum over even n of (a r^n + b r^-n + c r^(n+2) + d r^(2-n)) cos(n theta)
 

@@ -1,0 +1,53 @@
+"""What is committed and read first: README.md and the sheets are whole and filled."""
+
+import re
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+
+from lithofrac.report.blocks import BLOCK
+
+pytestmark = pytest.mark.no_core
+ROOT = Path(__file__).parents[3]
+SHEETS = sorted((ROOT / "reports" / "sheets").glob("*.md"))
+PAGES = [ROOT / "README.md", *SHEETS]
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+FILL = "fill it: snakemake --cores all pages"
+
+
+def links(page):
+    """Local targets of links and pictures of a page: path and anchor."""
+    for target in LINK.findall(page.read_text(encoding="utf-8")):
+        if not re.match(r"[a-z]+:", target):
+            path, _, anchor = unquote(target).partition("#")
+            yield target, (page.parent / path if path else page), anchor
+
+
+def anchors(page):
+    """Anchors that a Markdown page has, as forges make them of its headings."""
+    headings = re.findall(r"^#+ +(.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_links_and_pictures_of_a_page_are_there(page):
+    for target, path, anchor in links(page):
+        assert path.exists(), f"{page.name}: {target}"
+        assert not anchor or anchor in anchors(path), f"{page.name}: {target}"
+
+
+def test_readme_has_links_to_check():
+    assert len(list(links(ROOT / "README.md"))) > 5
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_every_table_of_a_page_is_filled(page):
+    """With a header, a rule and at least one row; a suite that ran has left nothing out."""
+    text = page.read_text(encoding="utf-8")
+    blocks = list(BLOCK.finditer(text))
+    assert len(blocks) == text.count("<!-- table:") > 0
+    for block in blocks:
+        inside = block[0].removeprefix(block["head"]).removesuffix(block["tail"])
+        rows = [line for line in inside.splitlines() if line.startswith("| ")]
+        assert len(rows) > 2, f"{page.name}: table {block['name']} is empty, {FILL}"
