@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lithofrac.errors import CoreError
+from lithofrac.errors import CheckpointError
 from lithofrac.problem import Problem
 from lithofrac.results.files import write_whole
 
@@ -48,7 +48,7 @@ def read(folder: Path, mark: str) -> tuple[dict[str, np.ndarray], list[str]]:
 
     Raises
     ------
-    CoreError
+    CheckpointError
         If none is good; the message says why for each.
     """
     refused = []
@@ -68,4 +68,4 @@ def read(folder: Path, mark: str) -> tuple[dict[str, np.ndarray], list[str]]:
             refused.append(f"{path}: it belongs to another case, mesh or material")
         else:
             return arrays, refused
-    raise CoreError("; ".join(refused) or f"{folder}: there is no checkpoint to resume from")
+    raise CheckpointError("; ".join(refused) or f"{folder}: there is no checkpoint to resume from")
