@@ -2,10 +2,8 @@
 
 import io
 import json
+import os
 import signal
-import subprocess
-import sys
-import time
 
 import pandas as pd
 import pytest
@@ -13,6 +11,7 @@ import pytest
 from lithofrac import cli
 from lithofrac.cli import main
 from lithofrac.config import find_case, load_case
+from lithofrac.core import Run
 from lithofrac.errors import CoreError
 from lithofrac.progress import Progress
 
@@ -92,22 +91,29 @@ def test_a_numerical_failure_exits_with_3(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_run_exits_with_130_and_goes_on(tmp_path, number):
+def test_an_interrupted_run_exits_with_130_and_goes_on(tmp_path, monkeypatch, capsys, number):
+    """The signal comes while the core is at work on the fifth record."""
     out = tmp_path / "a"
-    long = ["--set", "loading.hold_transits=400", "--set", "scene.element_size_mm=1"]
-    case = ["run", "bar_wave", *long, "--out", str(out)]
-    command = [sys.executable, "-m", "lithofrac", *case, "--quiet"]
-    running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    deadline = time.monotonic() + 60
-    while not (out / "checkpoint.npz").exists() and time.monotonic() < deadline:
-        time.sleep(0.02)
-    running.send_signal(number)
-    said = running.communicate(timeout=60)[1]
-    assert running.returncode == 130
+    case = ["run", "bar_wave", *SHORT, "--out", str(out)]
+    advance, calls = Run.advance, []
+
+    def interrupted(self, steps, threads=1):
+        advance(self, steps, threads)
+        calls.append(steps)
+        if len(calls) == 5:
+            os.kill(os.getpid(), number)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Run, "advance", interrupted)
+        assert main([*case, "--quiet"]) == 130
+    said = capsys.readouterr().err
     assert said == (f"lithofrac: interrupted; the same command with --resume goes on from {out}\n")
     assert json.loads((out / "summary.json").read_text())["status"] == "interrupted"
     assert main([*case, "--resume", "--quiet"]) == 0
     assert json.loads((out / "summary.json").read_text())["status"] == "completed"
+    assert main(["run", "bar_wave", *SHORT, "--out", str(tmp_path / "b"), "--quiet"]) == 0
+    tables = [pd.read_parquet(tmp_path / run / "history.parquet") for run in "ab"]
+    pd.testing.assert_frame_equal(*tables, check_exact=True)
 
 
 def test_defects_of_the_program_are_not_hidden(tmp_path, monkeypatch):
