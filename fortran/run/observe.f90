@@ -9,7 +9,8 @@ module lithofrac_run_observe
    implicit none
    private
 
-   public :: element_state, energy_now, internal_energy, load_records, n_element_state
+   public :: element_state, energy_now, internal_energy, kinetic_energy, load_records, &
+      n_element_state
 
    integer, parameter :: n_element_state = 17  !! rows of `element_state`
 
@@ -27,16 +28,34 @@ contains
       ledger%elastic = energy(1)
       ledger%compressive = energy(2)
       ledger%fracture = energy(3)
-      ledger%kinetic = sum(model%sums(1, :))
+      ledger%kinetic = kinetic_energy(model)
       if (model%step > 0) then
          ledger%external = ledger%external &
             + work_before(model%velocities, model%pressures, model%dt, model%fields)
          ledger%damping = ledger%damping + 0.5_wp*model%dt*sum(model%sums(2, :))
+         ledger%contact = ledger%contact + model%contact%work_before(1)
+         ledger%friction = ledger%friction + model%contact%work_before(2)
       end if
       model%ledger%scale = max(model%ledger%scale, ledger%elastic + ledger%compressive &
          + ledger%fracture)
       ledger%scale = model%ledger%scale
    end subroutine energy_now
+
+   !> 1/2 v(n-1/2) M v(n+1/2) [J]; the node update knows prescribed velocities only as new.
+   pure function kinetic_energy(model) result(energy)
+      type(model_type), intent(in) :: model
+      real(wp) :: energy
+
+      integer :: i
+
+      energy = sum(model%sums(1, :))
+      do i = 1, size(model%velocities)
+         associate (load => model%velocities(i))
+            energy = energy + 0.5_wp*load%now &
+               *sum(model%fields%mass(load%node)*(load%before - load%now))
+         end associate
+      end do
+   end function kinetic_energy
 
    !> Elastic energy and what the Mohr-Coulomb and the tension planes have dissipated [J].
    function internal_energy(model) result(energy)

@@ -1,0 +1,421 @@
+!> Contact of one step: list, pairs, impulses, and what they did to the energy.
+!>
+!> Forward increment (position level): the gap at the end of the step must not be negative, and
+!> an impulse acts only where it is zero. Exact multipliers have no stiffness, so contact does
+!> not lower the stable step. This module knows boundary nodes only; `run` brings their motion.
+module lithofrac_contact_contact
+   use lithofrac_base_kinds, only: wp
+   use lithofrac_base_status, only: bad_input, ok, set_failure, status_type
+   use lithofrac_contact_corners, only: classify, no_corner
+   use lithofrac_contact_multipliers, only: relative_velocity, solve_pairs
+   use lithofrac_contact_pairs, only: corner_pair, corner_reach, edge_pair, feasible_bias, &
+      pair_type
+   use lithofrac_contact_search, only: candidates_type, list_candidates, list_is_stale
+   use lithofrac_contact_surfaces, only: new_surfaces, offset, surfaces_type, update_shape
+   use lithofrac_mesh_mesh, only: mesh_type
+   implicit none
+   private
+
+   public :: contact_type, new_contact, prepare_list, solve_contact
+   public :: solved, prescribed_collision, too_fast, lost
+
+   ! Outcomes of a step.
+   integer, parameter :: solved = 0
+   integer, parameter :: prescribed_collision = 1  !! bodies that may not yield meet
+   integer, parameter :: too_fast = 2              !! a pair may jump over its faces
+   integer, parameter :: lost = 3                  !! a position is not finite
+
+   integer, parameter :: usual_sweeps = 50
+   integer, parameter :: many_sweeps = 200
+   real(wp), parameter :: deep = 1.0e-4_wp         !! penetration that asks for many sweeps, over h
+   real(wp), parameter :: accuracy = 1.0e-3_wp     !! of the largest relative velocity
+   real(wp), parameter :: fine = 1.0e-7_wp         !! gap that no sweep is worth, over h
+   real(wp), parameter :: longest_way = 0.05_wp    !! of a pair in a step, over h
+   real(wp), parameter :: steps_ahead = 2.0_wp     !! a fast node makes a corner so long before
+   real(wp), parameter :: rigid = 1.0e-8_wp        !! compliance along a normal that is none
+   real(wp), parameter :: floor = 1.0e-9_wp        !! of a compliance, over the other component
+   real(wp), parameter :: meeting = 1.0e-6_wp      !! overlap of prescribed bodies, over h
+   real(wp), parameter :: rotated = 1.0e-6_wp      !! squared turn that asks for new corners [rad2]
+
+   type :: statistics_type
+      integer :: pairs_max = 0
+      integer :: steps = 0                         !! with at least one pair
+      integer :: sweeps = 0
+      integer :: unconverged = 0                   !! steps
+      integer :: lists = 0                         !! times the list was made
+      real(wp) :: penetration = 0.0_wp             !! deepest, over h
+   end type statistics_type
+
+   type :: contact_type
+      logical :: on = .false.
+      type(surfaces_type) :: surfaces
+      real(wp), allocatable :: friction(:, :)      !! (n_tags, n_tags)
+      type(candidates_type) :: candidates
+      integer, allocatable :: kind(:)              !! (n_corners)
+      integer, allocatable :: face(:, :)           !! (2, n_corners)
+      real(wp), allocatable :: tangent(:, :)       !! (2, n) edges when corners were classified
+      real(wp), allocatable :: corner_impulse(:, :)  !! (2, n_corners) normal, tangential [N s]
+      real(wp), allocatable :: edge_impulse(:, :)  !! (2, n_edges)
+      type(pair_type), allocatable :: pairs(:)     !! room for every candidate
+      integer :: n_pairs = 0
+      real(wp), allocatable :: inverse_mass(:, :)  !! (2, n) [1/kg]
+      real(wp), allocatable :: before(:, :)        !! (2, n) velocity at the half step before [m/s]
+      real(wp), allocatable :: v(:, :)             !! (2, n) and after it [m/s]
+      real(wp), allocatable :: impulse(:, :)       !! (2, n) sum on the node [N s]
+      real(wp) :: work_before(2) = 0.0_wp          !! normal, friction: half step before [J]
+      real(wp) :: work_after(2) = 0.0_wp           !! and after [J]
+      type(statistics_type) :: statistics
+   end type contact_type
+
+contains
+
+   !> Prepare the boundary of a mesh for contact.
+   subroutine new_contact(contact, mesh, friction, status)
+      type(contact_type), intent(out) :: contact
+      type(mesh_type), intent(in) :: mesh
+      real(wp), intent(in) :: friction(:, :)   !! by surface tag; bodies are the first tags
+      type(status_type), intent(out) :: status
+
+      if (size(friction, 1) < mesh%n_bodies) then
+         call set_failure(status, bad_input, "contact: a body has no friction")
+      else if (.not. all(friction >= 0.0_wp .and. friction <= huge(1.0_wp))) then
+         call set_failure(status, bad_input, "contact: friction is a finite number >= 0")
+      else if (any(abs(friction - transpose(friction)) > 0.0_wp)) then
+         call set_failure(status, bad_input, "contact: friction must be symmetric")
+      end if
+      if (status%code /= ok) return
+      call new_surfaces(contact%surfaces, mesh, status)
+      if (status%code /= ok) return
+      contact%friction = friction
+      associate (n => contact%surfaces%n)
+         allocate (contact%inverse_mass(2, n), contact%before(2, n), source=0.0_wp)
+         allocate (contact%v(2, n), contact%impulse(2, n), source=0.0_wp)
+      end associate
+      contact%tangent = contact%surfaces%tangent
+      contact%candidates%u = contact%surfaces%u
+      contact%on = .true.
+   end subroutine new_contact
+
+   !> Impulses of one step; `contact%v` holds the velocities without contact, then with it.
+   subroutine solve_contact(contact, dt, critical, code, node)
+      type(contact_type), intent(inout) :: contact
+      real(wp), intent(in) :: dt               !! [s]
+      real(wp), intent(in) :: critical         !! largest stable step [s]
+      integer, intent(out) :: code
+      integer, intent(out) :: node(2)          !! boundary nodes that failed
+
+      real(wp) :: fastest
+      integer :: i, sweeps
+      logical :: converged
+
+      node = 1
+      code = lost
+      call update_shape(contact%surfaces)
+      if (.not. all(abs(contact%surfaces%tangent) <= 1.5_wp)) return
+      if (list_is_stale(contact%candidates, contact%surfaces)) call renew_list(contact)
+      call turn_corners(contact)
+      call collect_pairs(contact, dt, critical, code, node)
+      contact%work_before = 0.0_wp
+      contact%work_after = 0.0_wp
+      contact%impulse = 0.0_wp
+      if (code /= solved .or. contact%n_pairs == 0) return
+      associate (pairs => contact%pairs(:contact%n_pairs), h => contact%surfaces%h)
+         fastest = 0.0_wp
+         do i = 1, contact%n_pairs
+            fastest = max(fastest, maxval(abs(relative_velocity(pairs(i), contact%v))))
+         end do
+         call solve_pairs(pairs, contact%inverse_mass, max(accuracy*fastest, fine*h/dt), &
+            merge(many_sweeps, usual_sweeps, any(pairs%gap(1) < -deep*h)), contact%v, sweeps, &
+            converged)
+         do i = 1, contact%n_pairs
+            call book_pair(contact, pairs(i))
+            if (all(abs(relative_velocity(pairs(i), contact%v))*dt <= longest_way*h)) cycle
+            code = too_fast
+            node = pairs(i)%node(:2)
+         end do
+      end associate
+      call count_step(contact%statistics, contact%n_pairs, sweeps, converged)
+   end subroutine solve_contact
+
+   !> A new list of candidates; impulses go along.
+   subroutine renew_list(contact)
+      type(contact_type), intent(inout) :: contact
+
+      type(candidates_type) :: old
+      real(wp), allocatable :: corner_impulse(:, :), edge_impulse(:, :)
+
+      call move_alloc(contact%candidates%corner, old%corner)
+      call move_alloc(contact%candidates%edge, old%edge)
+      if (allocated(old%corner)) then
+         call move_alloc(contact%corner_impulse, corner_impulse)
+         call move_alloc(contact%edge_impulse, edge_impulse)
+      end if
+      contact%tangent = contact%surfaces%tangent
+      call prepare_list(contact)
+      if (allocated(old%corner)) then
+         call carry_over(old%corner, corner_impulse, contact%candidates%corner, &
+            contact%corner_impulse)
+         call carry_over(old%edge, edge_impulse, contact%candidates%edge, contact%edge_impulse)
+      end if
+      contact%statistics%lists = contact%statistics%lists + 1
+   end subroutine renew_list
+
+   !> List for `surfaces%u` with corners for `tangent`: all that is not saved in a checkpoint.
+   subroutine prepare_list(contact)
+      type(contact_type), intent(inout) :: contact
+
+      integer :: n_corners, n_edges, i
+
+      call list_candidates(contact%candidates, contact%surfaces)
+      n_corners = size(contact%candidates%corner, 2)
+      n_edges = size(contact%candidates%edge, 2)
+      if (allocated(contact%kind)) deallocate (contact%kind, contact%face, contact%pairs)
+      allocate (contact%kind(n_corners), contact%face(2, n_corners))
+      allocate (contact%pairs(n_corners + n_edges))
+      contact%corner_impulse = spread([0.0_wp, 0.0_wp], 2, n_corners)
+      contact%edge_impulse = spread([0.0_wp, 0.0_wp], 2, n_edges)
+      do i = 1, n_corners
+         call classify_corner(contact, i)
+      end do
+   end subroutine prepare_list
+
+   !> Copy the values of pairs that are in both lists; both are sorted.
+   pure subroutine carry_over(old_pair, old_value, new_pair, new_value)
+      integer, intent(in) :: old_pair(:, :)
+      real(wp), intent(in) :: old_value(:, :)
+      integer, intent(in) :: new_pair(:, :)
+      real(wp), intent(inout) :: new_value(:, :)
+
+      integer :: i, k
+
+      k = 1
+      do i = 1, size(new_pair, 2)
+         do while (k <= size(old_pair, 2))
+            if (old_pair(1, k) > new_pair(1, i)) exit
+            if (old_pair(1, k) == new_pair(1, i) .and. old_pair(2, k) >= new_pair(2, i)) exit
+            k = k + 1
+         end do
+         if (k > size(old_pair, 2)) exit
+         if (all(old_pair(:, k) == new_pair(:, i))) new_value(:, i) = old_value(:, k)
+      end do
+   end subroutine carry_over
+
+   pure subroutine classify_corner(contact, i)
+      type(contact_type), intent(inout) :: contact
+      integer, intent(in) :: i
+
+      associate (first => contact%candidates%corner(1, i), t => contact%tangent, &
+            second => contact%candidates%corner(2, i), prev => contact%surfaces%prev)
+         call classify(t(:, prev(first)), t(:, first), t(:, prev(second)), t(:, second), &
+            contact%kind(i), contact%face(:, i))
+      end associate
+   end subroutine classify_corner
+
+   !> Classify corners again where an edge has turned since the last time.
+   pure subroutine turn_corners(contact)
+      type(contact_type), intent(inout) :: contact
+
+      logical :: turned(contact%surfaces%n)
+      integer :: i
+
+      associate (t => contact%surfaces%tangent, old => contact%tangent)
+         do i = 1, contact%surfaces%n
+            turned(i) = (t(1, i) - old(1, i))**2 + (t(2, i) - old(2, i))**2 > rotated
+         end do
+         if (.not. any(turned)) return
+         do i = 1, contact%surfaces%n
+            if (turned(i)) old(:, i) = t(:, i)
+         end do
+      end associate
+      associate (corner => contact%candidates%corner, prev => contact%surfaces%prev)
+         do i = 1, size(corner, 2)
+            if (any(turned(corner(:, i))) .or. any(turned(prev(corner(:, i))))) then
+               call classify_corner(contact, i)
+            end if
+         end do
+      end associate
+   end subroutine turn_corners
+
+   !> Pairs that may close in this step: corners first, then nodes over edges.
+   subroutine collect_pairs(contact, dt, critical, code, node)
+      type(contact_type), intent(inout) :: contact
+      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: critical
+      integer, intent(out) :: code
+      integer, intent(out) :: node(2)
+
+      logical :: is_corner(0:size(contact%kind))
+      real(wp) :: arm(2)
+      type(pair_type) :: pair
+      integer :: i
+
+      code = solved
+      node = 1
+      contact%n_pairs = 0
+      is_corner(0) = .false.
+      associate (surfaces => contact%surfaces, list => contact%candidates, v => contact%v)
+         do i = 1, size(contact%kind)
+            is_corner(i) = .false.
+            if (contact%kind(i) == no_corner) cycle
+            associate (a => list%corner(1, i), b => list%corner(2, i))
+               arm = offset(surfaces, a, b)
+               if (norm2(arm) > max(corner_reach*surfaces%h, &
+                  steps_ahead*dt*norm2(contact%before(:, a) - contact%before(:, b)))) cycle
+               is_corner(i) = .true.
+               pair = corner_pair(surfaces, a, b, contact%kind(i), contact%face(:, i), &
+                  arm + dt*(v(:, a) - v(:, b)))
+               if (pair%n_faces == 0) cycle
+               pair%candidate = i
+               pair%friction = friction_of(contact, [surfaces%prev(a), a], [surfaces%prev(b), b])
+            end associate
+            call keep_pair(contact, pair, contact%corner_impulse(:, i), dt, critical, code, node)
+            if (code /= solved) return
+         end do
+         do i = 1, size(list%edge, 2)
+            if (is_corner(list%corner_at(1, i)) .or. is_corner(list%corner_at(2, i))) cycle
+            associate (a => list%edge(1, i), b => list%edge(2, i))
+               pair = edge_pair(surfaces, a, b)
+               if (pair%n_faces == 0) cycle
+               pair%candidate = -i
+               pair%friction = friction_of(contact, [surfaces%prev(a), a], [b, b])
+            end associate
+            call keep_pair(contact, pair, contact%edge_impulse(:, i), dt, critical, code, node)
+            if (code /= solved) return
+         end do
+      end associate
+      contact%corner_impulse = 0.0_wp
+      contact%edge_impulse = 0.0_wp
+   end subroutine collect_pairs
+
+   !> Choice: where faces of different friction meet in a corner, the largest holds.
+   pure function friction_of(contact, first, second) result(friction)
+      type(contact_type), intent(in) :: contact
+      integer, intent(in) :: first(2)    !! edges at the one side
+      integer, intent(in) :: second(2)   !! and at the other
+      real(wp) :: friction
+
+      friction = maxval(contact%friction(contact%surfaces%tag(first), &
+         contact%surfaces%tag(second)))
+   end function friction_of
+
+   !> Complete a pair and add it to those of the step.
+   subroutine keep_pair(contact, pair, impulse, dt, critical, code, node)
+      type(contact_type), intent(inout) :: contact
+      type(pair_type), intent(inout) :: pair
+      real(wp), intent(in) :: impulse(2)   !! normal and tangential, of the step before [N s]
+      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: critical
+      integer, intent(inout) :: code
+      integer, intent(inout) :: node(2)
+
+      real(wp) :: w(2)
+      integer :: k, face
+
+      w = 0.0_wp
+      do k = 1, pair%n_nodes
+         w = w + pair%weight(k)**2*contact%inverse_mass(:, pair%node(k))
+      end do
+      do face = pair%n_faces, 1, -1
+         associate (n => pair%normal(:, face), h => contact%surfaces%h)
+            pair%bias(face) = feasible_bias(pair%gap(face), h, dt, critical)
+            contact%statistics%penetration = max(contact%statistics%penetration, &
+               -pair%gap(face)/h)
+            if (dot_product(n, w*n) > rigid*maxval(w)) cycle
+            if ((dot_product(relative_velocity(pair, contact%v), n) + pair%bias(face))*dt &
+                  < -meeting*h) then
+               code = prescribed_collision
+               node = pair%node(:2)
+               return
+            end if
+         end associate
+         call drop_face(pair, face)
+      end do
+      if (pair%n_faces == 0) return
+      pair%compliance = max(w, floor*maxval(w))
+      associate (n => pair%normal(:, 1))
+         pair%impulse = impulse(1)*n + impulse(2)*[-n(2), n(1)]
+      end associate
+      contact%n_pairs = contact%n_pairs + 1
+      contact%pairs(contact%n_pairs) = pair
+   end subroutine keep_pair
+
+   !> Forget a face along which nothing can yield.
+   pure subroutine drop_face(pair, face)
+      type(pair_type), intent(inout) :: pair
+      integer, intent(in) :: face
+
+      if (face == 1 .and. pair%n_faces == 2) then
+         pair%normal(:, 1) = pair%normal(:, 2)
+         pair%gap(1) = pair%gap(2)
+         pair%bias(1) = pair%bias(2)
+      end if
+      pair%n_faces = pair%n_faces - 1
+   end subroutine drop_face
+
+   !> Remember an impulse for the next step; book its work and its share on the nodes.
+   pure subroutine book_pair(contact, pair)
+      type(contact_type), intent(inout) :: contact
+      type(pair_type), intent(in) :: pair
+
+      real(wp) :: normal(2), p(2), d(2, 2)
+      integer :: k
+
+      if (.not. any(abs(pair%impulse) > 0.0_wp)) return
+      normal = pair%normal(:, 1)
+      p(1) = dot_product(pair%impulse, normal)
+      p(2) = normal(1)*pair%impulse(2) - normal(2)*pair%impulse(1)
+      if (pair%candidate > 0) contact%corner_impulse(:, pair%candidate) = p
+      if (pair%candidate < 0) contact%edge_impulse(:, -pair%candidate) = p
+      do k = 1, pair%n_nodes
+         associate (sum_of => contact%impulse(:, pair%node(k)))
+            sum_of = sum_of + pair%weight(k)*pair%impulse
+         end associate
+      end do
+      d(:, 1) = relative_velocity(pair, contact%before)
+      d(:, 2) = relative_velocity(pair, contact%v)
+      p = pressure_of(pair)
+      contact%work_before = contact%work_before &
+         + 0.5_wp*[dot_product(p, d(:, 1)), dot_product(pair%impulse - p, d(:, 1))]
+      contact%work_after = contact%work_after &
+         + 0.5_wp*[dot_product(p, d(:, 2)), dot_product(pair%impulse - p, d(:, 2))]
+   end subroutine book_pair
+
+   !> The part of an impulse that is pressure; the rest is friction.
+   !>
+   !> At a re-entrant pair of faces an impulse between the two normals is pressure of both. Slip
+   !> along one face opens the other, so friction lies outside, on the side of the closed face.
+   pure function pressure_of(pair) result(p)
+      type(pair_type), intent(in) :: pair
+      real(wp) :: p(2)
+
+      real(wp) :: share(2), determinant
+      integer :: face
+
+      face = 1
+      if (pair%n_faces == 2) then
+         associate (n => pair%normal, q => pair%impulse)
+            determinant = n(1, 1)*n(2, 2) - n(2, 1)*n(1, 2)
+            share = [q(1)*n(2, 2) - q(2)*n(1, 2), n(1, 1)*q(2) - n(2, 1)*q(1)]*determinant
+         end associate
+         if (all(share >= 0.0_wp)) then
+            p = pair%impulse
+            return
+         end if
+         if (share(1) < 0.0_wp) face = 2
+      end if
+      p = dot_product(pair%impulse, pair%normal(:, face))*pair%normal(:, face)
+   end function pressure_of
+
+   pure subroutine count_step(statistics, n_pairs, sweeps, converged)
+      type(statistics_type), intent(inout) :: statistics
+      integer, intent(in) :: n_pairs
+      integer, intent(in) :: sweeps
+      logical, intent(in) :: converged
+
+      statistics%pairs_max = max(statistics%pairs_max, n_pairs)
+      statistics%steps = statistics%steps + 1
+      statistics%sweeps = statistics%sweeps + sweeps
+      if (.not. converged) statistics%unconverged = statistics%unconverged + 1
+   end subroutine count_step
+
+end module lithofrac_contact_contact
