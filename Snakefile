@@ -1,5 +1,5 @@
-# From the cases of a suite to the report. Every rule calls the command line and nothing else; all
-# results are below out/. Another suite: `--config suite=configs/suite_quick.yaml`.
+# From a suite to the report, below out/; every rule calls the command line and nothing else.
+# Another suite: `--config suite=configs/suite_quick.yaml`.
 from pathlib import Path
 
 from lithofrac.config import load_suite
@@ -12,22 +12,21 @@ SCENES = {case["title"]: name for name, case in reversed(CASES.items())}.values(
 
 ROCKS = ["quartzite", "sandstone", "tyndall_limestone"]
 CONFINEMENTS = ["00", "01", "02", "05", "10", "15", "20", "30", "40"]  # MPa
-BENCH = [f"{OUT}/bench/{{rock}}/triaxial_p{level}.parquet" for level in CONFINEMENTS]
+BENCH = [f"{OUT}/bench/{{rock}}/{{test}}_p{level}.parquet" for level in CONFINEMENTS]
 QUARTZITE = "configs/materials/quartzite.yaml"
 
 # Sources that decide a result beside its case, and those that decide a figure beside its results.
 CORE = sorted(map(str, Path("fortran").rglob("*.f90")))
 PARTS = ["pywrap/lithofrac/analysis", "pywrap/lithofrac/data", "pywrap/lithofrac/plots"]
-DRAWING = sorted(str(file) for part in PARTS for file in Path(part).glob("*.py"))
-DRAWING += sorted(
-    str(file) for file in Path("data").rglob("*.*") if file.suffix != ".md"
-)
+DRAWING = [file for part in PARTS for file in sorted(Path(part).glob("*.py"))]
+DRAWING += [*sorted(Path("data").rglob("*.csv")), *sorted(Path("data").rglob("*.yaml"))]
 
 RUNS = expand(f"{OUT}/runs/{{case}}/summary.json", case=CASES)
 SANDSTONE = [run for run in RUNS if "/sandstone_" in run]
-CURVES = expand(BENCH, rock=ROCKS)
+CURVES = expand(BENCH, rock=ROCKS, test="triaxial")
+STIFF = expand(BENCH, rock="sandstone", test="stiff_confinement")
 TABLES = {
-    "results": ["reports/bands.csv", QUARTZITE, *RUNS, *CURVES],
+    "results": ["reports/bands.csv", QUARTZITE, *RUNS, *CURVES, *STIFF],
     "single_element": CURVES,
     "strength": SANDSTONE,
     "errors": SANDSTONE,
@@ -48,7 +47,6 @@ wildcard_constraints:
 rule all:
     input:
         f"{OUT}/report.md",
-        f"{OUT}/figures/sandstone.png",
         expand(f"{OUT}/figures/single_element_{{rock}}.svg", rock=ROCKS),
         expand(f"{OUT}/figures/mesh_{{case}}.svg", case=SCENES),
 
@@ -77,20 +75,20 @@ rule bench:
         CORE,
         rock="configs/materials/{rock}.yaml",
     output:
-        f"{OUT}/bench/{{rock}}/triaxial_p{{confinement}}.parquet",
+        f"{OUT}/bench/{{rock}}/{{test}}_p{{level}}.parquet",
     log:
-        f"{OUT}/log/bench_{{rock}}_{{confinement}}.txt",
+        f"{OUT}/log/bench_{{rock}}_{{test}}_{{level}}.txt",
     message:
-        "Drive one material point of {wildcards.rock} at {wildcards.confinement} MPa"
+        "Drive one material point of {wildcards.rock}: {wildcards.test}, {wildcards.level} MPa"
     shell:
-        "lithofrac point {input.rock} --test triaxial --confinement-MPa {wildcards.confinement}"
-        " --out {output} > {log} 2>&1"
+        "lithofrac point {input.rock} --test {wildcards.test} --confinement-MPa {wildcards.level}"
+        " --end-strain 0.025 --out {output} > {log} 2>&1"
 
 
 rule plot_bench:
     input:
         DRAWING,
-        curves=BENCH,
+        curves=expand(BENCH, test="triaxial", allow_missing=True),
     output:
         report(
             f"{OUT}/figures/single_element_{{rock}}.svg",
@@ -133,7 +131,8 @@ rule plot_suite:
     input:
         DRAWING,
         runs=SANDSTONE,
-        stiff=[run for run in SANDSTONE if "/sandstone_plane_strain_p" in run],
+        gallery=[run for run in SANDSTONE if "/sandstone_plane_strain_p" in run],
+        stiff=STIFF,
         rock=QUARTZITE,
     output:
         curves=report(
@@ -158,8 +157,8 @@ rule plot_suite:
         "Plot the sandstone tests and the measured strengths"
     shell:
         "(lithofrac plot stress_strain {input.runs} --out {output.curves} &&"
-        " lithofrac plot strength {input.runs} --out {output.strength} &&"
-        " lithofrac plot gallery {input.stiff} --out {output.gallery} &&"
+        " lithofrac plot strength {input.runs} {input.stiff} --out {output.strength} &&"
+        " lithofrac plot gallery {input.gallery} --out {output.gallery} &&"
         " lithofrac plot measured {input.rock} --out {output.measured}) > {log} 2>&1"
 
 
@@ -180,6 +179,7 @@ rule table:
 rule summary:
     input:
         expand(f"{OUT}/tables/{{table}}.csv", table=TABLES),
+        rules.plot_suite.output,
         Path("reports/sheets").glob("*.md"),
     output:
         markdown=f"{OUT}/report.md",

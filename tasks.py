@@ -34,10 +34,10 @@ PIP = "pip>=23.1"  # the first that takes several settings of a build; Debian 12
 COVERAGE_ASKED = 90  # percent of the lines below fortran/
 
 # What `build` hands to meson beyond pyproject.toml. Coverage and run-time checks share a build:
-# both want -Og, and a third run of the tests would cost more than it could tell.
+# one more run of all tests would cost more than it could tell.
 BUILDS = {
     "release": "",
-    "checked": "-Dbuildtype=debug -Doptimization=g -Dchecked=true -Db_coverage=true",
+    "checked": "-Dbuildtype=debug -Doptimization=1 -Dchecked=true -Db_coverage=true",
     "sanitize": "-Dbuildtype=debug -Doptimization=1 -Db_sanitize=address,undefined"
     " -Db_lundef=false",
 }

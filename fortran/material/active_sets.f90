@@ -10,7 +10,7 @@ module lithofrac_material_active_sets
    private
 
    public :: n_groups, n_members, member_high, member_low, no_planes, apex
-   public :: feasible, plane_bit, tension_count
+   public :: feasible, edge_of, plane_bit, tension_count
 
    integer, parameter :: n_groups = 14
    integer, parameter :: no_planes = 1  !! group without Mohr-Coulomb planes
@@ -53,5 +53,29 @@ contains
          feasible = tension_count(tension) <= 1
       end select
    end function feasible
+
+   !> Group of the two planes (i, k) and (j, k), or (k, i) and (k, j) if `k` is the larger stress.
+   pure function edge_of(i, j, k, larger) result(group)
+      integer, intent(in) :: i, j, k
+      logical, intent(in) :: larger  !! `k` is the larger stress of both planes
+      integer :: group
+
+      integer :: one, two
+
+      do group = 1, n_groups
+         if (n_members(group) /= 2) cycle
+         if (larger) then
+            if (any(member_high(:, group) /= k)) cycle
+            one = member_low(1, group)
+            two = member_low(2, group)
+         else
+            if (any(member_low(:, group) /= k)) cycle
+            one = member_high(1, group)
+            two = member_high(2, group)
+         end if
+         if (min(one, two) == min(i, j) .and. max(one, two) == max(i, j)) return
+      end do
+      group = no_planes
+   end function edge_of
 
 end module lithofrac_material_active_sets

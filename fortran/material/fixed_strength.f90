@@ -29,6 +29,7 @@ module lithofrac_material_fixed_strength
       real(wp) :: g2          !! twice the shear modulus [Pa]
       real(wp) :: lame        !! Lame's first constant [Pa]
       real(wp) :: tolerance   !! on yield functions [Pa]
+      real(wp) :: tie         !! stresses closer than this are equal [Pa]
       real(wp) :: noise       !! rounding of a strain increment [-]
       logical :: compression  !! Mohr-Coulomb planes exist
       logical :: total        !! all inelastic strain counts as effective plastic strain
@@ -208,7 +209,7 @@ contains
       logical, intent(out) :: found        !! the problem has one answer
 
       integer :: high, i, low, m, members
-      real(wp) :: alpha(3), beta(3), det, direction(3, 2), fall(3, 2), inverse(3)
+      real(wp) :: alpha(3), beta(3), direction(3, 2), fall(3, 2), inverse(3)
       real(wp) :: lambda(2), matrix(2, 2), over(2), own(3), strength, tau, theta, weight, y(3)
 
       members = n_members(flow%group)
@@ -253,10 +254,9 @@ contains
             if (.not. abs(matrix(1, 1)) > 0.0_wp) return
             lambda(1) = over(1)/matrix(1, 1)
          else
-            det = matrix(1, 1)*matrix(2, 2) - matrix(1, 2)*matrix(2, 1)
-            if (abs(det) <= 1.0e-14_wp*abs(matrix(1, 1)*matrix(2, 2))) return
-            lambda(1) = (over(1)*matrix(2, 2) - over(2)*matrix(1, 2))/det
-            lambda(2) = (over(2)*matrix(1, 1) - over(1)*matrix(2, 1))/det
+            call eliminate(matrix, over, lambda, found)
+            if (.not. found) return
+            found = .false.
          end if
          flows = all(lambda >= -0.1_wp*trial%tolerance/trial%g2)
          if (flows) lambda = max(lambda, 0.0_wp)
@@ -271,5 +271,29 @@ contains
       end do
       found = .true.
    end subroutine solve_stage
+
+   !> Two linear equations by elimination with row pivoting. Cramer's rule would lose the digits
+   !> that edges need at friction angles near 90 degrees.
+   pure subroutine eliminate(matrix, right, x, found)
+      real(wp), intent(in) :: matrix(2, 2)
+      real(wp), intent(in) :: right(2)
+      real(wp), intent(out) :: x(2)
+      logical, intent(out) :: found  !! the matrix is regular
+
+      integer :: other, pivot
+      real(wp) :: factor, rest
+
+      x = 0.0_wp
+      pivot = merge(1, 2, abs(matrix(1, 1)) >= abs(matrix(2, 1)))
+      other = 3 - pivot
+      found = abs(matrix(pivot, 1)) > 0.0_wp
+      if (.not. found) return
+      factor = matrix(other, 1)/matrix(pivot, 1)
+      rest = matrix(other, 2) - factor*matrix(pivot, 2)
+      found = abs(rest) > 1.0e-14_wp*abs(matrix(other, 2))
+      if (.not. found) return
+      x(2) = (right(other) - factor*right(pivot))/rest
+      x(1) = (right(pivot) - matrix(pivot, 2)*x(2))/matrix(pivot, 1)
+   end subroutine eliminate
 
 end module lithofrac_material_fixed_strength

@@ -60,19 +60,12 @@ contains
       integer, intent(in) :: i, j, k   !! axes: largest, two smallest
       real(wp), intent(out) :: x(3)
 
-      real(wp) :: need, rest
+      real(wp) :: need
 
       x = min(d, 0.0_wp)
       if (.not. open(i)) then
          need = now%b_flow/now%a_flow*d(i)
-         rest = need + x(j) + x(k)
-         if (rest > 0.0_wp .and. open(j) .and. open(k)) then
-            call level(need, x(j), x(k))
-         else if (rest > 0.0_wp .and. open(j)) then
-            x(j) = x(j) - rest
-         else if (rest > 0.0_wp .and. open(k)) then
-            x(k) = x(k) - rest
-         end if
+         if (need + x(j) + x(k) > 0.0_wp .and. open(j) .and. open(k)) call level(need, x(j), x(k))
       end if
       x(i) = -now%a_flow/now%b_flow*(x(j) + x(k))
    end subroutine least_flow_of_equal_minima

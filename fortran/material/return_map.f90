@@ -13,13 +13,14 @@
 module lithofrac_material_return_map
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: no_return_map, ok
-   use lithofrac_material_active_sets, only: apex, member_high, member_low, n_members, &
-      no_planes, plane_bit, tension_count
+   use lithofrac_material_active_sets, only: apex, edge_of, member_high, member_low, &
+      n_members, no_planes, plane_bit
    use lithofrac_material_fixed_strength, only: flow_type, free_choice, return_to_any, &
       return_to_set, trial_type
    use lithofrac_material_flow_split, only: least_flow_at_apex, least_flow_of_equal_maxima, &
       least_flow_of_equal_minima
-   use lithofrac_material_mohr_coulomb, only: advance, main_plane_yield, mobilise, mobilised_type
+   use lithofrac_material_mohr_coulomb, only: main_plane_yield, mobilise, mobilised_type
+   use lithofrac_material_pyramid_return, only: return_to_pyramid
    use lithofrac_material_rock, only: rock_type
    use lithofrac_material_tension_planes, only: softened_strength
    implicit none
@@ -30,11 +31,11 @@ module lithofrac_material_return_map
    integer, parameter :: apex_bit = 9      !! all six Mohr-Coulomb planes
    integer, parameter :: mixture_bit = 10  !! two sets that share their stress
 
-   real(wp), parameter :: third = 1.0_wp/3.0_wp
    real(wp), parameter :: two_thirds = 2.0_wp/3.0_wp
    real(wp), parameter :: working_tolerance = 0.5_wp  !! of the yield tolerance
    real(wp), parameter :: tie_tolerance = 1.0e-2_wp   !! of the yield tolerance
-   integer, parameter :: max_newton = 12
+   integer, parameter :: max_walk = 2000
+   real(wp), parameter :: max_reach = 8.0_wp
    integer, parameter :: max_bracket = 200
 
    !> One point of the function F.
@@ -65,6 +66,7 @@ contains
       type(sample_type) :: best
       integer :: order(3)
       logical :: found, mixed, opens
+      real(wp) :: rounding
 
       dep = 0.0_wp
       dep_compressive = 0.0_wp
@@ -76,8 +78,9 @@ contains
       sorted%h = h
       sorted%g2 = 2.0_wp*rock%shear
       sorted%lame = rock%lame
-      sorted%tolerance = max(working_tolerance*rock%yield_tolerance, &
-         8.0_wp*epsilon(1.0_wp)*max(abs(sorted%t(1)), abs(sorted%t(3))))
+      rounding = 8.0_wp*epsilon(1.0_wp)*max(abs(sorted%t(1)), abs(sorted%t(3)))
+      sorted%tolerance = max(working_tolerance*rock%yield_tolerance, rounding)
+      sorted%tie = max(tie_tolerance*rock%yield_tolerance, rounding)
       sorted%noise = 2.0_wp*epsilon(1.0_wp)*(ep_eff &
          + (abs(sorted%t(1)) + abs(sorted%t(3)) + rock%strength_scale)/sorted%g2)
       sorted%compression = rock%compression
@@ -93,7 +96,7 @@ contains
       found = .false.
       mixed = .false.
       if (.not. opens .and. .not. rock%explicit_coupling) then
-         call return_to_main_plane(rock, sorted, ep_eff, now, best, found)
+         call return_to_pyramid(rock, sorted, ep_eff, now, best%e, best%flow, found)
       end if
       if (.not. found) then
          call search(rock, sorted, ep_eff, free_choice, best, mixed, found)
@@ -109,58 +112,8 @@ contains
       active = active_mask(best%flow, order, mixed)
    end subroutine return_to_surface
 
-   !> Newton's method on the plane of the extreme stresses, the most frequent return.
-   pure subroutine return_to_main_plane(rock, trial, e_old, start, best, found)
-      type(rock_type), intent(in) :: rock
-      type(trial_type), intent(in) :: trial
-      real(wp), intent(in) :: e_old
-      type(mobilised_type), intent(in) :: start  !! strength at `e_old`
-      type(sample_type), intent(inout) :: best
-      logical, intent(out) :: found
-
-      type(mobilised_type) :: now
-      integer :: trip
-      real(wp) :: e, f_slope, g, g_slope, give, k_slope, norm, product, stiff, stiff_slope, step, lambda
-
-      found = .false.
-      now = start
-      e = e_old
-      stiff = 0.5_wp*trial%g2 + trial%lame
-      do trip = 1, max_newton
-         product = now%sin_phi*now%sin_psi
-         norm = sqrt(third*(1.0_wp + now%sin_psi**2))
-         give = 1.0_wp/(0.5_wp*trial%g2 + stiff*product)
-         lambda = (now%a*trial%t(1) - now%b*trial%t(3) - now%k)*give
-         g = norm*lambda
-         if (abs(e - e_old - g) <= 1.0e-13_wp*g + trial%noise) exit
-         if (trip == max_newton) return
-         k_slope = now%c_slope*now%cos_phi - now%c*now%sin_phi*now%phi_slope
-         f_slope = 0.5_wp*(trial%t(1) + trial%t(3))*now%cos_phi*now%phi_slope - k_slope
-         stiff_slope = stiff*(now%cos_phi*now%phi_slope*now%sin_psi &
-            + now%sin_phi*now%cos_psi*now%psi_slope)
-         g_slope = norm*give*(f_slope - lambda*stiff_slope) &
-            + third*lambda*now%sin_psi*now%cos_psi*now%psi_slope/norm
-         if (.not. g_slope < 1.0_wp) return
-         step = (e_old + g - e)/(1.0_wp - g_slope)
-         e = e + step
-         if (.not. (e >= e_old .and. e <= start%knot)) return
-         call advance(rock, start, e_old, e, now)
-      end do
-      best%e = e
-      best%flow%tension = 0
-      best%flow%group = 2
-      best%flow%x = [now%a_flow*lambda, 0.0_wp, -now%b_flow*lambda]
-      best%flow%d = best%flow%x
-      best%flow%s = trial%t - trial%g2*best%flow%d - trial%lame*now%sin_psi*lambda
-      found = lambda >= 0.0_wp .and. best%flow%s(1) >= best%flow%s(2) &
-         .and. best%flow%s(2) >= best%flow%s(3) &
-         .and. best%flow%s(1) <= softened_strength(trial%ft(1), trial%h, best%flow%d(1)) &
-         .and. best%flow%s(2) <= trial%ft(2) .and. best%flow%s(3) <= trial%ft(3)
-      if (.not. found .and. best%flow%s(2) > best%flow%s(1)) best%flow%group = 3
-      if (.not. found .and. best%flow%s(2) < best%flow%s(3)) best%flow%group = 4
-   end subroutine return_to_main_plane
-
-   !> Smallest root of F, walking the segments of the tables.
+   !> Smallest root of F, walking the segments of the tables from knot to knot.
+   !> Where g grows, steps of -F cannot pass the first root; they double inside a segment.
    pure subroutine search(rock, trial, e_old, prescribed, best, mixed, found)
       type(rock_type), intent(in) :: rock
       type(trial_type), intent(in) :: trial
@@ -170,8 +123,9 @@ contains
       logical, intent(out) :: mixed            !! a mixture of two sets
       logical, intent(out) :: found
 
+      integer :: trip
       type(sample_type) :: low, high
-      real(wp) :: knot, next_knot
+      real(wp) :: knot, next_knot, reach
 
       mixed = .false.
       low%flow = best%flow
@@ -181,22 +135,19 @@ contains
       best = low
       if (converged(trial, low, e_old)) return
       high = low
-      do
-         ! The predicted strain first, the end of the segment if that lies below the root.
-         high%e = min(low%e - low%f, knot)
+      reach = 1.0_wp
+      do trip = 1, max_walk
+         high%e = min(low%e - reach*low%f, knot)
+         if (.not. high%e > low%e) high%e = low%e + spacing(low%e)
          call sample(rock, trial, e_old, prescribed, high, next_knot, found)
          if (.not. found) return
          if (high%f >= 0.0_wp .or. converged(trial, high, e_old)) exit
-         if (high%e < knot .and. knot < huge(knot)) then
-            low = high
-            high%e = knot
-            call sample(rock, trial, e_old, prescribed, high, next_knot, found)
-            if (.not. found) return
-            if (high%f >= 0.0_wp) exit
-         end if
          low = high
+         reach = merge(1.0_wp, min(2.0_wp*reach, max_reach), next_knot > knot)
          knot = next_knot
       end do
+      found = trip <= max_walk
+      if (.not. found) return
       call close_in(rock, trial, e_old, prescribed, low, high, best, mixed, found)
    end subroutine search
 
@@ -269,7 +220,7 @@ contains
       call return_to_any(trial, now, prescribed, point%flow, found)
       if (.not. found) return
       if (prescribed == free_choice .and. point%flow%group /= no_planes) then
-         call take_least_flow(trial, now, tie_tolerance*rock%yield_tolerance, point%flow)
+         call take_least_flow(trial, now, point%flow)
       end if
       point%f = point%e - e_old - increment(trial, point%flow)
    end subroutine sample
@@ -298,35 +249,44 @@ contains
    end function converged
 
    !> Where more planes meet than the set holds, take the smallest Mohr-Coulomb flow.
-   pure subroutine take_least_flow(trial, now, tie, flow)
+   pure subroutine take_least_flow(trial, now, flow)
       type(trial_type), intent(in) :: trial
       type(mobilised_type), intent(in) :: now
-      real(wp), intent(in) :: tie          !! stresses closer than this are equal [Pa]
       type(flow_type), intent(inout) :: flow
 
-      integer :: high, low, middle
+      integer :: group, high, low, middle
       logical :: open(3), equal_maxima, equal_minima
-      real(wp) :: x(3)
+      real(wp) :: rounding, x(3)
 
-      open = flow%s - softened_strength(trial%ft, trial%h, flow%d) >= -tie
+      open = flow%s - softened_strength(trial%ft, trial%h, flow%d) >= -trial%tie
       if (.not. any(open)) return
       high = maxloc(flow%s, 1)
       low = minloc(flow%s, 1)
       if (high == low) low = modulo(high, 3) + 1
       middle = 6 - high - low
-      equal_maxima = flow%s(high) - flow%s(middle) <= tie
-      equal_minima = flow%s(middle) - flow%s(low) <= tie
+      equal_maxima = flow%s(high) - flow%s(middle) <= trial%tie
+      equal_minima = flow%s(middle) - flow%s(low) <= trial%tie
       if (equal_maxima .and. equal_minima) then
+         group = apex
          call least_flow_at_apex(now, flow%d, open, x)
       else if (equal_maxima .and. count(open) > 1) then
+         group = edge_of(high, middle, low, larger=.false.)
          call least_flow_of_equal_maxima(now, flow%d, open, high, middle, low, x)
       else if (equal_minima .and. count(open) > 1) then
+         group = edge_of(middle, low, high, larger=.true.)
          call least_flow_of_equal_minima(now, flow%d, open, high, middle, low, x)
       else
          return
       end if
       if (sum(x**2) >= sum(flow%x**2)) return
+      ! Planes that only nearly meet do not leave the split open.
+      rounding = 1.0e-13_wp*maxval(abs(flow%d))
+      if (any(flow%d - x < -rounding) .or. any(flow%d - x > rounding .and. .not. open)) return
+      if (equal_maxima .and. .not. equal_minima) then
+         if (min(x(high), x(middle)) < 0.0_wp) return
+      end if
       flow%x = x
+      flow%group = merge(group, no_planes, any(x < 0.0_wp .or. x > 0.0_wp))
    end subroutine take_least_flow
 
    !> Two sets that are both right at the strain where F jumps: mix their flows.
@@ -406,15 +366,20 @@ contains
       logical, intent(in) :: mixed
       integer :: mask
 
-      integer :: i, m
+      integer :: high, i, low, m
+      logical :: shared_high
 
       mask = 0
       do i = 1, 3
          if (flow%d(i) > flow%x(i)) mask = ibset(mask, order(i) - 1)
       end do
+      shared_high = member_high(1, flow%group) == member_high(2, flow%group)
       do m = 1, n_members(flow%group)
-         mask = ibset(mask, plane_bit(order(member_high(m, flow%group)), &
-            order(member_low(m, flow%group))))
+         high = member_high(m, flow%group)
+         low = member_low(m, flow%group)
+         if (n_members(flow%group) == 2 .and. .not. abs(flow%x(merge(low, high, shared_high))) &
+            > 0.0_wp) cycle
+         mask = ibset(mask, plane_bit(order(high), order(low)))
       end do
       if (flow%group == apex) mask = ibset(mask, apex_bit)
       if (mixed) mask = ibset(mask, mixture_bit)

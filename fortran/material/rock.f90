@@ -104,9 +104,11 @@ contains
       if (any(table(2, :) < 0.0_wp)) then
          call set_failure(status, bad_input, "rock: cohesion must not be negative")
       else if (any(table(3, :) < 0.0_wp .or. table(3, :) >= 0.5_wp*pi)) then
-         call set_failure(status, bad_input, "rock: friction must be at least 0 and below 90 degrees")
+         call set_failure(status, bad_input, &
+            "rock: friction must be at least 0 and below 90 degrees")
       else if (any(table(4, :) < 0.0_wp .or. table(4, :) >= 0.5_wp*pi)) then
-         call set_failure(status, bad_input, "rock: dilation must be at least 0 and below 90 degrees")
+         call set_failure(status, bad_input, &
+            "rock: dilation must be at least 0 and below 90 degrees")
       end if
    end subroutine set_tables
 

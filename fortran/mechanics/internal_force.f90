@@ -161,10 +161,10 @@ contains
       real(wp), intent(out) :: axis(width, 2)       !! axes after an elastic step
 
       integer :: i
-      real(wp) :: mean, half, radius, high, low, turn, first, second, by_radius
+      real(wp) :: mean, half, radius, high, low, turn, first, second, by_radius, least
       logical :: keeps
 
-      !$omp simd private(mean, half, radius, high, low, turn, first, second, by_radius, keeps)
+      !$omp simd private(mean, half, radius, high, low, turn, first, second, by_radius, least, keeps)
       do i = 1, width
          mean = 0.5_wp*(stress(i, 1) + stress(i, 2))
          half = 0.5_wp*(stress(i, 1) - stress(i, 2))
@@ -180,8 +180,9 @@ contains
             first - ft(i, 1)), max(second - ft(i, 2), stress(i, 3) - ft(i, 3)))
          by_radius = 1.0_wp/max(radius, tiny(radius))
          by_radius = merge(by_radius, -by_radius, keeps)
-         axis(i, 1) = merge(half*by_radius, old_axis(i, 1), radius > equal_stress*abs(mean))
-         axis(i, 2) = merge(stress(i, 4)*by_radius, old_axis(i, 2), radius > equal_stress*abs(mean))
+         least = equal_stress*max(abs(stress(i, 1)), abs(stress(i, 2)), abs(stress(i, 3)))
+         axis(i, 1) = merge(half*by_radius, old_axis(i, 1), radius > least)
+         axis(i, 2) = merge(stress(i, 4)*by_radius, old_axis(i, 2), radius > least)
       end do
    end subroutine check_softened
 
@@ -241,16 +242,18 @@ contains
       type(inelastic_type), intent(in) :: state
       real(wp) :: stress(4)
 
-      real(wp) :: du(4), strain(4), rotation(3)
+      real(wp) :: du(4), gradient(4), inelastic(4), strain(4), rotation(3)
       integer :: corner(3)
 
       corner = chunks%node(lane, :, chunk)
+      gradient = chunks%gradient(lane, :, chunk)
+      inelastic = state%strain(lane, :, chunk)
       call gather_previous(corner, fields%u, fields%v, dt, du)
       strain(3) = 0.0_wp
       if (chunks%axisymmetric) strain(3) = chunks%hoop(lane, chunk) &
          *sum(fields%u(1, corner) - dt*fields%v(1, corner))
-      call strains(1, chunks%gradient(lane, :, chunk), du, strain, rotation)
-      call elastic_stress(1, rock%lame, rock%shear, strain, state%strain(lane, :, chunk), stress)
+      call strains(1, gradient, du, strain, rotation)
+      call elastic_stress(1, rock%lame, rock%shear, strain, inelastic, stress)
    end function previous_stress
 
 end module lithofrac_mechanics_internal_force

@@ -11,7 +11,7 @@ module lithofrac_run_model
    use lithofrac_mechanics_fields, only: fields_type, inelastic_type, new_fields, new_inelastic
    use lithofrac_mechanics_loads, only: pressure_type, ramp_type, velocity_type
    use lithofrac_mechanics_lumped_mass, only: corner_masses
-   use lithofrac_mesh_mesh, only: mesh_type, new_mesh
+   use lithofrac_mesh_mesh, only: mesh_type, new_mesh, triangle_area
    use lithofrac_run_damping, only: affine_type, n_moments
    use lithofrac_run_energy, only: ledger_type
    use lithofrac_run_node_update, only: n_sums
@@ -51,7 +51,7 @@ module lithofrac_run_model
 contains
 
    !> Build a model at rest.
-   subroutine new_model(model, nodes, triangles, body, axisymmetric, rocks, band_width, &
+   subroutine new_model(model, nodes, triangles, body, axisymmetric, rocks, band_factor, &
          settings, status)
       type(model_type), intent(out) :: model
       real(wp), intent(in) :: nodes(:, :)       !! (2, n_nodes) [m]
@@ -59,7 +59,7 @@ contains
       integer, intent(in) :: body(:)            !! (n_elements)
       logical, intent(in) :: axisymmetric
       type(rock_type), intent(in) :: rocks(:)   !! (n_bodies)
-      real(wp), intent(in) :: band_width(:)     !! (n_elements) crack band width [m]
+      real(wp), intent(in) :: band_factor(:)    !! (n_bodies) crack band width is sqrt(factor area)
       type(settings_type), intent(in) :: settings
       type(status_type), intent(out) :: status
 
@@ -78,7 +78,7 @@ contains
       call new_chunks(model%chunks, model%mesh, axisymmetric)
       call new_blocks(model%blocks, model%chunks, model%mesh)
       call new_fields(model%fields, model%mesh%n_nodes)
-      call new_inelastic(model%state, model%chunks, model%rocks, band_width)
+      call new_inelastic(model%state, model%chunks, model%rocks, band_widths(model%mesh, band_factor))
       allocate (model%velocities(0), model%pressures(0))
       allocate (model%affine(model%mesh%n_bodies))
       allocate (model%alpha(model%mesh%n_bodies), source=max(0.0_wp, settings%damping_alpha))
@@ -88,6 +88,22 @@ contains
       call set_time_step(model)
       call set_frequencies(model)
    end subroutine new_model
+
+   !> Crack band width of every element [m].
+   pure function band_widths(mesh, factor) result(width)
+      type(mesh_type), intent(in) :: mesh
+      real(wp), intent(in) :: factor(:)          !! (n_bodies)
+      real(wp) :: width(mesh%n_elements)
+
+      integer :: element
+
+      do element = 1, mesh%n_elements
+         associate (corner => mesh%triangles(:, element))
+            width(element) = sqrt(factor(mesh%body(element))*triangle_area( &
+               mesh%nodes(:, corner(1)), mesh%nodes(:, corner(2)), mesh%nodes(:, corner(3))))
+         end associate
+      end do
+   end function band_widths
 
    subroutine set_mass(model)
       type(model_type), intent(inout) :: model

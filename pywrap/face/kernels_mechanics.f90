@@ -5,6 +5,7 @@ module kernels_mechanics
    use lithofrac_material_rock, only: new_rock, rock_type
    use lithofrac_mechanics_bare_kernel, only: bare_steps
    use lithofrac_mechanics_internal_force, only: chunk_force, failure_type
+   use lithofrac_mesh_mesh, only: triangle_area
    use lithofrac_run_model, only: model_type, new_model
    use lithofrac_run_observe, only: element_state, n_element_state
    use lithofrac_run_settings, only: settings_type
@@ -45,7 +46,8 @@ contains
       critical = 0.0_c_double
       call new_rock(rock(1), constants, table, options, status)
       if (status%code == ok) call new_model(model, nodes, reshape([1, 2, 3], [3, 1]), [1], &
-         axisymmetric /= 0, rock, [band_width], settings_type(), status)
+         axisymmetric /= 0, rock, [band_width**2/triangle_area(nodes(:, 1), nodes(:, 2), &
+         nodes(:, 3))], settings_type(), status)
       if (status%code == ok) then
          critical = model%critical
          do step = 1, n_steps
@@ -84,19 +86,18 @@ contains
       type(status_type) :: status
       type(settings_type) :: settings
       real(c_double) :: no_table(4, 1)
-      real(c_double), allocatable :: v(:, :), band_width(:)
+      real(c_double), allocatable :: v(:, :)
       integer, allocatable :: body(:)
 
       no_table = 0.0_c_double
       moved = nodes
       settings%time_step_factor = time_step_factor
-      allocate (band_width(n_elements), source=1.0_c_double)
       allocate (body(n_elements), source=1)
       v = velocity
       call new_rock(rock(1), [young, poisson, density, 0.0_c_double, 0.0_c_double], no_table, &
          [0, 0, 1, 0], status)
       if (status%code == ok) call new_model(model, nodes, triangles, body, .false., rock, &
-         band_width, settings, status)
+         [1.0_c_double], settings, status)
       if (status%code == ok) call bare_steps(model%chunks, rock(1)%lame, rock(1)%shear, &
          1.0_c_double/model%fields%mass, model%dt, n_steps, moved, v)
       code = status%code

@@ -32,7 +32,7 @@ contains
 
    !> Build a run at rest; `run` is the handle for all later calls.
    subroutine run_new(nodes, n_nodes, triangles, body, n_elements, axisymmetric, constants, &
-         tables, knots, options, n_bodies, n_knots, band_width, time_step_factor, damping, &
+         tables, knots, options, n_bodies, n_knots, band_factor, time_step_factor, damping, &
          fraction, alpha, run, code, message)
       integer(c_int), intent(in) :: n_nodes, n_elements, n_bodies, n_knots
       real(c_double), intent(in) :: nodes(2, n_nodes)          !! [m]
@@ -43,7 +43,7 @@ contains
       real(c_double), intent(in) :: tables(4, n_knots, n_bodies)
       integer(c_int), intent(in) :: knots(n_bodies)            !! knots in use of each table
       integer(c_int), intent(in) :: options(4, n_bodies)
-      real(c_double), intent(in) :: band_width(n_elements)     !! [m]
+      real(c_double), intent(in) :: band_factor(n_bodies)      !! width is sqrt(factor area)
       real(c_double), intent(in) :: time_step_factor
       integer(c_int), intent(in) :: damping                    !! as `settings_type`
       real(c_double), intent(in) :: fraction
@@ -72,7 +72,7 @@ contains
       end if
       allocate (slots(slot)%model)
       call new_model(slots(slot)%model, nodes, triangles, body, axisymmetric /= 0, rocks, &
-         band_width, settings_type(time_step_factor, damping, fraction, alpha), status)
+         band_factor, settings_type(time_step_factor, damping, fraction, alpha), status)
       call export_status(status, code, message)
       if (code == ok) then
          run = slot

@@ -114,6 +114,9 @@ def _point(commands) -> None:
         help="lateral pressure, default 0",
     )
     one.add_argument("--end-strain", type=float, metavar="E", help="axial strain at the end")
+    one.add_argument(
+        "--stiffness", type=float, metavar="K", help="of stiff_confinement, over Young's modulus"
+    )
     one.add_argument("--out", type=Path, required=True, metavar="FILE", help="curve, .parquet")
 
 

@@ -6,6 +6,7 @@ by the command that needs them.
 
 from __future__ import annotations
 
+import math
 import signal
 import subprocess
 import sys
@@ -140,7 +141,12 @@ def point(options: Namespace) -> int:
     from lithofrac.config.material import Material
 
     rock = Material.load(options.rock)
-    more = {} if options.end_strain is None else {"end_strain": options.end_strain}
+    if options.end_strain is not None and not 0.0 < options.end_strain < math.inf:
+        raise ConfigError(f"--end-strain {options.end_strain:g}: expected a number above 0")
+    if options.stiffness is not None and not 0.0 <= options.stiffness < math.inf:
+        raise ConfigError(f"--stiffness {options.stiffness:g}: expected a number not below 0")
+    given = {"end_strain": options.end_strain, "stiffness": options.stiffness}
+    more = {name: value for name, value in given.items() if value is not None}
     try:
         curve = bench.drive(
             rock, test=options.test, confinement_MPa=options.confinement_MPa, **more

@@ -34,6 +34,7 @@ _checkpoint_size = checked(_face.run_checkpoint_size)
 _save = checked(_face.run_save)
 _restore = checked(_face.run_restore)
 
+BAND_FACTOR = {"sqrt_2A": 2.0, "sqrt_A": 1.0}
 DAMPING = {"none": 0, "affine": 1, "ground": 2}  # fortran/run/settings.f90
 
 
@@ -91,13 +92,6 @@ class ElementState:
     fracturing_strain: np.ndarray
     axis_angle: np.ndarray
     crack_angle: np.ndarray
-
-
-def band_widths(problem: Problem) -> np.ndarray:
-    """Crack band width of every element [m], (m,): the choice of its material."""
-    areas = problem.mesh.areas()
-    factor = np.array([2.0 if m.band_width == "sqrt_2A" else 1.0 for m in problem.materials])
-    return np.sqrt(factor[problem.mesh.body] * areas)
 
 
 class Run:
@@ -246,7 +240,7 @@ def _arguments(problem: Problem) -> tuple:
         tables,
         knots,
         options,
-        band_widths(problem),
+        [BAND_FACTOR[m.band_width] for m in materials],
         problem.time_step_factor,
         kind,
         problem.damping.fraction,

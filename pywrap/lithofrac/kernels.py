@@ -29,6 +29,12 @@ _point_step = checked(_face.point_step)
 table_eval = checked(_face.table_eval)
 """(values, slopes) of the table (x, y) at the points `at`."""
 
+element_path = checked(_core.kernels_mechanics.element_path)
+"""(states, forces, dissipated, critical step) of a triangle led through displacements."""
+
+bare_elastic = checked(_core.kernels_mechanics.bare_elastic)
+"""Positions after bare elastic steps of a free body: the yardstick of the benchmark."""
+
 ACTIVE_PLANES = (
     "T1", "T2", "T3", "M12", "M13", "M21", "M23", "M31", "M32", "apex", "mixture", "cut",
 )  # fmt: skip

@@ -251,8 +251,9 @@ class _Bench:
                 raise CoreError(f"no consistent return at axial strain {axial:.6g}")
             return last[0][0, 0] + self.pressure + self.spring * lateral
 
-        guess = self.strain[0] - lame / stiff * (axial - self.strain[1])
-        _root(excess, guess, stiff + self.spring, 1e-13 * self.scales.strength_scale)
+        # From the old lateral strain: a softened rock has other roots further away.
+        tolerance = 1e-13 * self.scales.strength_scale
+        _root(excess, self.strain[0], stiff + self.spring, tolerance)
         return last[:6], int(last[8][0]), total
 
     def _accept(self, state: list[np.ndarray], active: int, strain: np.ndarray) -> None:

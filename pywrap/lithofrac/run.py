@@ -70,7 +70,8 @@ def simulate(
     out : results folder; made if it is not there
     threads : threads of the core; results are the same bits for any number
     resume : go on from the newest good checkpoint in `out`
-    progress : called at every record with step, steps, time_s, percent, rate, residual, seconds_left
+    progress : called at every record with step, steps, time_s, percent, rate, residual and
+        seconds_left
     meta : entries for the summary (case, commit)
 
     Returns

@@ -78,6 +78,7 @@ def make_run(tmp_path, sandstone):
             "status": "completed", "case": name, "elements": 1200, "nodes": 660, "steps": 100000,
             "wall_seconds": 6.0, "core_seconds": 5.5, "element_steps_per_core_second": 2.2e7,
             "energy_residual": 1e-9, "kinetic_ratio_at_peak": 1e-3,
+            "version": "0.1.0", "commit": "0123456789ab",
         }  # fmt: skip
         (folder / "summary.json").write_text(json.dumps(summary))
         case = {
@@ -98,14 +99,15 @@ def make_run(tmp_path, sandstone):
 
 @pytest.fixture
 def make_bench(tmp_path, monkeypatch):
-    """make_bench(rock, confinement, factor=1) -> file of a material-point curve."""
+    """make_bench(rock, confinement, factor=1, test) -> file of a material-point curve."""
     monkeypatch.chdir(ROOT)  # rocks are found by name in configs/
 
-    def made(rock, confinement, factor=1.0):
-        path = tmp_path / "out" / "bench" / rock / f"triaxial_p{confinement:02d}.parquet"
+    def made(rock, confinement, factor=1.0, test="triaxial"):
+        path = tmp_path / "out" / "bench" / rock / f"{test}_p{confinement:02d}.parquet"
         path.parent.mkdir(parents=True, exist_ok=True)
         strain, stress = straight_curve(Material.load(rock), confinement, factor)
         plastic = np.maximum(strain - 0.003, 0.0)
+        ends = [0.0, 0.01]
         pd.DataFrame(
             {
                 "axial_strain": strain,
@@ -114,6 +116,9 @@ def make_bench(tmp_path, monkeypatch):
                 "volumetric_strain": -0.5 * strain + 2 * plastic,
                 "plastic_strain": plastic,
                 "tensile_strength_lateral_MPa": np.maximum(4.0 - 2000 * plastic, 0.0),
+                "cohesion_MPa": np.interp(plastic, ends, [20.0, 0.0]),
+                "friction_angle_deg": np.interp(plastic, ends, [17.0, 52.5]),
+                "dilation_angle_deg": np.interp(plastic, ends, [0.0, 18.0]),
             }
         ).to_parquet(path)
         return path

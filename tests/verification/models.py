@@ -4,12 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lithofrac import _core
+from lithofrac import kernels
 from lithofrac.core import element_states
-from lithofrac.errors import checked
 from lithofrac.problem import Mesh, Problem, VelocityLoad
-
-_element_path = checked(_core.kernels_mechanics.element_path)
 
 NO_OPTIONS = np.array([0, 0, 1, 0], dtype=np.int32)  # compressive, implicit, planes on, no yield
 
@@ -101,7 +98,7 @@ def hold(name, nodes, component, speed=0.0, **ramp):
 
 def element_path(material, nodes, path, axisymmetric=False, band_width=1e-3):
     """Lead one triangle through displacements (n, 3, 2); `(ElementState, forces, dissipated)`."""
-    values, forces, dissipated, critical = _element_path(
+    values, forces, dissipated, critical = kernels.element_path(
         nodes.T,
         int(axisymmetric),
         [

@@ -10,7 +10,7 @@ from lithofrac.problem import Damping, PressureLoad, Ramp
 
 
 def yielding(axisymmetric=False):
-    """A specimen that yields, softens and cracks within 1,500 steps."""
+    """A specimen that yields, softens and cracks within 600 steps."""
     mesh = rectangle(20, 40, 0.01, 0.02, jitter=0.3)
     return problem(
         mesh,
@@ -19,7 +19,7 @@ def yielding(axisymmetric=False):
         velocity_loads=(
             hold("axis", mesh.nodes_of("left"), 0),
             hold("bottom", mesh.nodes_of("bottom"), 1),
-            hold("top", mesh.nodes_of("top"), 1, -5.0, ramp=Ramp(0.0, 5e-6)),
+            hold("top", mesh.nodes_of("top"), 1, -20.0, ramp=Ramp(0.0, 5e-6)),
         ),
         pressure_loads=(PressureLoad("side", mesh.edge_sets["right"], 2e6, 1e11, Ramp(0.0, 5e-6)),),
         damping=Damping(fraction=0.3),
@@ -30,9 +30,9 @@ def yielding(axisymmetric=False):
 @pytest.mark.parametrize("axisymmetric", [False, True])
 def test_threads_change_no_bit(axisymmetric):
     states = []
-    for threads in (1, 2, 3, 3):
+    for threads in (1, 2, 3):
         run = Run(yielding(axisymmetric))
-        run.advance(2000, threads)
+        run.advance(600, threads)
         states.append(run.save())
         assert run.elements(np.arange(1600)).plastic_strain.max() > 1e-3
     for other in states[1:]:
@@ -43,13 +43,13 @@ def test_threads_change_no_bit(axisymmetric):
 @pytest.mark.parametrize("axisymmetric", [False, True])
 def test_a_resumed_run_has_the_same_bits(axisymmetric):
     whole = Run(yielding(axisymmetric))
-    whole.advance(1237)
+    whole.advance(437)
     saved = whole.save()
-    whole.advance(463)
-    whole.advance(300)
+    whole.advance(63)
+    whole.advance(100)
     resumed = Run(yielding(axisymmetric))
     resumed.restore(saved)
-    resumed.advance(763)
+    resumed.advance(163)
     np.testing.assert_array_equal(whole.save().view(np.int64), resumed.save().view(np.int64))
     assert whole.energy() == resumed.energy()
 

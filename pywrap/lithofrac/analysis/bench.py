@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 
 from lithofrac.analysis.strength import Peak, first_peak
@@ -50,18 +49,6 @@ class Bench:
         """First peak of the axial stress [MPa], or None."""
         return first_peak(self.curve["axial_strain"], self.curve["axial_stress_MPa"])
 
-    def evolution(self) -> pd.DataFrame:
-        """Strength parameters along the curve: cohesion_MPa, friction and dilation_angle_deg."""
-        strain, cohesion, friction, dilation = self.material.table
-        here = self.curve["plastic_strain"].to_numpy()
-        return pd.DataFrame(
-            {
-                "cohesion_MPa": np.interp(here, strain, cohesion) / 1e6,
-                "friction_angle_deg": np.degrees(np.interp(here, strain, friction)),
-                "dilation_angle_deg": np.degrees(np.interp(here, strain, dilation)),
-            }
-        )
-
     @property
     def _name(self) -> re.Match:
         found = NAME.match(self.path.stem)
@@ -70,7 +57,13 @@ class Bench:
         return found
 
 
-def find_bench(paths: list[Path]) -> list[Bench]:
-    """Curves of files, by rock, test and confinement."""
-    curves = [Bench(Path(path)) for path in paths]
+def is_bench(path: Path) -> bool:
+    """Whether a file is a curve of the bench, by its name."""
+    return Path(path).suffix == ".parquet" and NAME.match(Path(path).stem) is not None
+
+
+def find_bench(paths: list[Path], test: str | None = None) -> list[Bench]:
+    """Curves among files, of one test or of all, by rock, test and confinement."""
+    curves = [Bench(Path(path)) for path in paths if is_bench(path)]
+    curves = [curve for curve in curves if test in (None, curve.test)]
     return sorted(curves, key=lambda curve: (curve.rock, curve.test, curve.confinement_MPa))

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from lithofrac.analysis.bench import is_bench
 from lithofrac.analysis.strength import Peak, first_peak
 from lithofrac.config.material import Material
 from lithofrac.config.yaml_file import read_yaml
@@ -63,6 +64,11 @@ class Run:
         return self.case["scene"]["kind"]
 
     @property
+    def axisymmetric(self) -> bool:
+        """Whether forces and energies are per radian instead of per metre of depth."""
+        return self.test == "triaxial" or bool(self.case["scene"].get("axisymmetric", False))
+
+    @property
     def confinement_MPa(self) -> float:
         """Lateral pressure at the start of axial loading."""
         return float(self.case["loading"].get("confinement_MPa", 0.0))
@@ -79,6 +85,10 @@ class Run:
 
 
 def find_runs(paths: list[Path]) -> list[Run]:
-    """Runs of folders, or of files that lie in them; each once, in the order given."""
-    folders = [path if path.is_dir() else path.parent for path in map(Path, paths)]
+    """Runs of folders, or of files that lie in them; each once, in the order given.
+
+    Curves of the bench among the files are left out.
+    """
+    paths = [Path(path) for path in paths if not is_bench(path)]
+    folders = [path if path.is_dir() else path.parent for path in paths]
     return [Run(folder) for folder in dict.fromkeys(folders)]

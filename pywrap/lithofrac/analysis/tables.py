@@ -32,13 +32,15 @@ SUMMARY = (
     "element_steps_per_core_second",
     "energy_residual",
     "kinetic_ratio_at_peak",
+    "version",
+    "commit",
 )
 
 
 def single_element(inputs: list[Path], data: Path) -> pd.DataFrame:
-    """Peaks of the material-point curves beside their closed form."""
+    """Peaks of the triaxial material-point curves beside their closed form."""
     rows = []
-    for curve in find_bench(inputs):
+    for curve in find_bench(inputs, "triaxial"):
         table, pressure = curve.material.table, curve.confinement_MPa * MPA
         peak, _ = peak_strength(table, pressure)
         computed = float(curve.curve["axial_stress_MPa"].max())

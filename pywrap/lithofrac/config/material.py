@@ -13,7 +13,7 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
 
-from lithofrac.config.base import GPA, MM, MPA, NonNegative, Positive, Section
+from lithofrac.config.base import GPA, MPA, NonNegative, Positive, Section
 from lithofrac.config.errors import ConfigError, sentences, suggestion
 from lithofrac.config.yaml_file import read_yaml
 
@@ -58,8 +58,6 @@ class Material(Section):
     """Tension planes are checked against their softened, or against their old strength."""
     band_width: Literal["sqrt_2A", "sqrt_A"] = "sqrt_2A"
     """Crack band width h_c of a triangle of area A."""
-    reference_size_mm: Positive | None = None
-    """Scale the softening part of the table by h_c over this size; off when left out."""
 
     @field_validator(*TENSION, *COLUMNS)
     @classmethod
@@ -146,11 +144,6 @@ class Material(Section):
     def fracture_energy(self) -> float:
         """Fracture energy Gf [J/m2]; 0 when elastic."""
         return self.fracture_energy_J_m2 or 0.0
-
-    @property
-    def reference_size(self) -> float | None:
-        """Reference size of the softening part of the table [m], or None."""
-        return None if self.reference_size_mm is None else self.reference_size_mm * MM
 
     @property
     def table(self) -> np.ndarray:

@@ -60,6 +60,8 @@ def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> 
     if kind not in known:
         what = "table" if known is TABLES else "figure"
         raise DataError(f"plot: no {what} {kind!r}, expected one of {', '.join(known)}")
+    if known is FIGURES and not inputs:
+        raise DataError(f"plot {kind}: no input, expected results folders or files to draw")
     made = known[kind](inputs, data)
     if known is FIGURES:
         style.save(made, out)

@@ -43,7 +43,7 @@ def draw_ledger(axes: Axes, run: Run) -> None:
         lw=0,
     )
     axes.plot(time, table["external_J"], "--", color=style.BLACK, label="external work")
-    depth = "radian" if run.test == "triaxial" else "metre of depth"
+    depth = "radian" if run.axisymmetric else "metre of depth"
     axes.set(ylabel=f"energy [J per {depth}]", ylim=(0, None))
     axes.legend(loc="upper left")
 

@@ -21,7 +21,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     """Mesh of one run, rebuilt boundary conditions drawn on it."""
     run = find_runs(inputs)[0]
     problem = make_problem(load_case(run.folder / "case.yaml"), Mesh.load(run.folder / "mesh.npz"))
-    drawn, axes = style.new_figure(height=5.0)
+    drawn, axes = style.new_figure(height=4.6, width=5.6)
     draw_problem(axes[0, 0], problem)
     handles, labels = axes[0, 0].get_legend_handles_labels()
     single = dict(zip(labels, handles, strict=True))
@@ -59,7 +59,7 @@ def draw_mesh(axes: Axes, mesh: Mesh) -> None:
             cmap=style.flat(BODIES[index % len(BODIES)]), edgecolors=style.GREY, linewidth=0.25,
             rasterized=len(chosen) > 5000,
         )  # fmt: skip
-        label = f"{name}: {len(chosen)} triangles"
+        label = f"{name}, triangles: {len(chosen)}"
         axes.plot([], [], "s", color=BODIES[index % len(BODIES)], mec=style.GREY, label=label)
     for edges in mesh.edge_sets.values():
         axes.add_collection(LineCollection(nodes[edges], colors=style.BLACK, linewidths=0.9))
@@ -69,7 +69,7 @@ def draw_rollers(axes: Axes, mesh: Mesh, load: VelocityLoad, size: float) -> Non
     """Draw circles just outside nodes that cannot move in one direction."""
     points = 1e3 * _some(mesh.nodes[load.nodes])
     points[:, load.component] += 0.015 * size * _outward(mesh, load)
-    axes.plot(*points.T, "o", ms=4, mfc="white", mec=style.GREEN, ls="none", clip_on=False,
+    axes.plot(*points.T, "o", ms=4, mfc="white", mec=style.GREEN, ls="none",
               label="roller")  # fmt: skip
 
 
@@ -104,11 +104,12 @@ def draw_pressure(axes: Axes, mesh: Mesh, load: PressureLoad, size: float) -> No
 
 def _arrows(axes: Axes, tips: np.ndarray, steps: np.ndarray, colour: str) -> None:
     """Draw arrows that end at `tips`; sizes in the units of the axes."""
-    axes.quiver(
+    arrows = axes.quiver(
         *tips.T, *steps.T, pivot="tip", angles="xy", scale_units="xy", scale=1.0,
         color=colour, units="inches", width=0.018, headwidth=5, headlength=6, headaxislength=6,
-        clip_on=False, zorder=4,
+        zorder=4,
     )  # fmt: skip
+    arrows.set_in_layout(False)  # its extent is not known before the axes have their size
     axes.plot(*(tips - steps).T, alpha=0.0)  # so that the limits of the axes include the tails
 
 
@@ -128,4 +129,5 @@ def _some(points: np.ndarray) -> np.ndarray:
 
 
 def _spread(count: int) -> np.ndarray:
-    return np.unique(np.linspace(0, count - 1, min(count, ARROWS)).round().astype(int))
+    """At most `ARROWS` of `count` indices, evenly apart."""
+    return np.arange(0, count, max(1, -(-(count - 1) // (ARROWS - 1))))

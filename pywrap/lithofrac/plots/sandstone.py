@@ -6,9 +6,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from lithofrac.analysis.bench import Bench, find_bench
 from lithofrac.analysis.mohr_coulomb import peak_line
 from lithofrac.analysis.runs import Run, find_runs
 from lithofrac.analysis.tables import NOT_DIGITISED
+from lithofrac.config.material import Material
 from lithofrac.data import Curve, load_curves
 from lithofrac.plots import style
 
@@ -54,15 +56,20 @@ def stress_strain(inputs: list[Path], data: Path) -> Figure:
 
 
 def strength(inputs: list[Path], data: Path) -> Figure:
-    """Fig. 10: strength against confinement, beside the closed form of Table 1."""
+    """Fig. 10: strength against confinement, beside Table 1 and the stiff material point.
+
+    `inputs` holds runs, and curves of the bench in stiff confinement.
+    """
     runs = find_runs(inputs)
     drawn, axes = style.new_figure(height=4.2)
     panel = axes[0, 0]
-    draw_line(panel, runs)
+    stiff = find_bench(inputs, "stiff_confinement")
+    draw_line(panel, runs[0].rock, max(one.confinement_MPa for one in [*runs, *stiff]))
+    draw_bench(panel, stiff)
     draw_series(panel, [run for run in runs if run.stiffness == 0.0], "o", style.BLUE,
                 "triaxial, this code")  # fmt: skip
-    stiff = sorted({run.stiffness for run in runs if run.stiffness > 0.0})
-    for (marker, colour), stiffness in zip(SWEEP, stiff, strict=False):
+    sweep = sorted({run.stiffness for run in runs if run.stiffness > 0.0})
+    for (marker, colour), stiffness in zip(SWEEP, sweep, strict=False):
         own = [run for run in runs if run.stiffness == stiffness]
         label = f"plane strain, k = {stiffness:g} E, this code"
         draw_series(panel, own, marker, colour, label)
@@ -108,11 +115,19 @@ def draw_points(axes: Axes, curve: Curve, marker: str) -> None:
     )
 
 
-def draw_line(axes: Axes, runs: list[Run]) -> None:
-    """Draw the strength of the hardening table, largest over the plastic strain."""
-    confinement = np.linspace(0.0, max(run.confinement_MPa for run in runs) or 1.0, 61)
-    line = peak_line(runs[0].rock.table, 1e6 * confinement) / 1e6
+def draw_line(axes: Axes, rock: Material, end: float) -> None:
+    """Draw the strength of a hardening table, largest over the plastic strain, up to `end` MPa."""
+    confinement = np.linspace(0.0, end or 1.0, 61)
+    line = peak_line(rock.table, 1e6 * confinement) / 1e6
     axes.plot(confinement, line, color=style.GREY, label="Table 1, closed form")
+
+
+def draw_bench(axes: Axes, curves: list[Bench]) -> None:
+    """Draw first peaks of the material point in stiff confinement."""
+    peaks = [(curve.confinement_MPa, curve.peak.stress) for curve in curves if curve.peak]
+    if peaks:
+        label = f"material point, k = {DEFAULT_STIFFNESS:g} E"
+        axes.plot(*zip(*peaks, strict=True), "--", color=style.GREY, label=label)
 
 
 def draw_series(axes: Axes, runs: list[Run], marker: str, colour: str, label: str) -> None:

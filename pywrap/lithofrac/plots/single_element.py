@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from lithofrac.analysis.bench import Bench, find_bench
+from lithofrac.data import DataError
 from lithofrac.plots import style
 
 PANELS = (
@@ -22,6 +22,10 @@ PANELS = (
 def figure(inputs: list[Path], data: Path) -> Figure:
     """Six panels against axial strain, one curve a confinement; `inputs` are of one rock."""
     curves = find_bench(inputs)
+    if not curves:
+        raise DataError(
+            f"{inputs[0]}: not a curve of the bench, expected ROCK/TEST_pCONFINEMENT.parquet"
+        )
     drawn, axes = style.new_figure(2, 3, height=4.9, sharex=True)
     colours = style.confinement_colours([curve.confinement_MPa for curve in curves])
     for panel, (column, label) in zip(axes.flat, PANELS, strict=True):
@@ -53,6 +57,5 @@ def figure(inputs: list[Path], data: Path) -> Figure:
 
 def draw_column(axes: Axes, curve: Bench, column: str, colour) -> None:
     """Draw one quantity of one curve against axial strain [%]."""
-    table = pd.concat([curve.curve, curve.evolution()], axis=1)
-    table["volumetric_percent"] = 100.0 * table["volumetric_strain"]
+    table = curve.curve.assign(volumetric_percent=100.0 * curve.curve["volumetric_strain"])
     axes.plot(100.0 * table["axial_strain"], table[column], color=colour)

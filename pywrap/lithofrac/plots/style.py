@@ -46,11 +46,13 @@ SETTINGS = {
 }
 
 
-def new_figure(rows: int = 1, columns: int = 1, height: float = 3.2, **kwargs) -> tuple:
-    """Figure of page width and its axes (always a 2-D array); `height` in inches."""
+def new_figure(
+    rows: int = 1, columns: int = 1, height: float = 3.2, width: float = WIDTH, **kwargs
+) -> tuple:
+    """Figure and its axes (always a 2-D array); sizes in inches."""
     plt.rcParams.update(SETTINGS)
     return plt.subplots(
-        rows, columns, figsize=(WIDTH, height), squeeze=False, layout="constrained", **kwargs
+        rows, columns, figsize=(width, height), squeeze=False, layout="constrained", **kwargs
     )
 
 

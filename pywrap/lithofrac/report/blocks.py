@@ -4,11 +4,12 @@
     anything here is replaced
     <!-- end -->
 
-The name is that of a table, `KEY=VALUE` keeps the rows in which that column has that value, and
-`columns` keeps columns. Text outside the blocks is never touched.
+The name is that of a table, `KEY=VALUE` keeps the rows in which that column has that value (`*`
+stands for anything), and `columns` keeps columns. Text outside the blocks is never touched.
 """
 
 import re
+from fnmatch import fnmatchcase
 
 import pandas as pd
 
@@ -60,5 +61,5 @@ def _chosen(block: re.Match, table: pd.DataFrame, file: str) -> pd.DataFrame:
         if key == "columns":
             columns = asked
         else:
-            table = table[table[key].astype(str) == value]
+            table = table[[fnmatchcase(str(cell), value) for cell in table[key]]]
     return table[columns]

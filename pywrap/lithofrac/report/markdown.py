@@ -25,6 +25,8 @@ th {{ background: #f2f2f2; }}
 
 def to_markdown(table: pd.DataFrame) -> str:
     """A table with readable headers and four significant digits."""
+    if table.empty:
+        return "Nothing of this kind was run.\n"
     head = [header(str(name)) for name in table]
     lines = [_row(head), _row(["---"] * len(head))]
     lines += [_row([_cell(value) for value in row]) for row in table.itertuples(index=False)]

@@ -1,5 +1,8 @@
 """What `lithofrac report OUT_DIR --out FILE` does."""
 
+import datetime
+import os
+import platform
 from pathlib import Path
 
 import pandas as pd
@@ -14,6 +17,12 @@ TITLES = {
     "errors": "Distance from digitised curves",
     "run_time": "Run time and energy error",
 }  # tables of the whole report, in order; the others stand in the sheets
+FIGURES = {
+    "stress_strain.svg": "Axial stress against axial strain of sandstone, compare Fig. 9",
+    "strength.svg": "Strength of sandstone against confinement, compare Fig. 10",
+    "measured.svg": "Table 1 beside TauTona quartzite, a fitted line beside Zigong sandstone",
+    "sandstone.png": "Where the specimens failed: plastic strain at the end",
+}
 
 
 def write_report(out_dir: Path, file: Path, sheets: Path = SHEETS) -> None:
@@ -42,7 +51,8 @@ def write_report(out_dir: Path, file: Path, sheets: Path = SHEETS) -> None:
     elif sheet.is_file():
         text = fill(sheet.read_text(encoding="utf-8"), tables, str(sheet))
     else:
-        text = whole_report(tables, sheets)
+        pictures = out_dir / "figures" if file.suffix == ".md" else None
+        text = whole_report(tables, sheets, pictures, file.parent)
     file.parent.mkdir(parents=True, exist_ok=True)
     part = file.with_name(f".{file.name}.part")
     part.write_text(to_html(text) if file.suffix == ".html" else text, encoding="utf-8")
@@ -63,9 +73,15 @@ def read_tables(out_dir: Path) -> dict[str, pd.DataFrame]:
     return tables
 
 
-def whole_report(tables: dict[str, pd.DataFrame], sheets: Path) -> str:
-    """Results first, then every sheet, then costs."""
-    parts = ["# lithofrac: report of the suite\n"]
+def whole_report(
+    tables: dict[str, pd.DataFrame], sheets: Path, pictures: Path | None, here: Path
+) -> str:
+    """Provenance and results first, then figures, every sheet, and costs.
+
+    Figures are linked from the folder `pictures` relative to `here`; a page that is embedded
+    elsewhere has none.
+    """
+    parts = ["# lithofrac: report of the suite\n", provenance(tables)]
     shown = [name for name in TITLES if name in tables]
     for name in shown:
         if name == "run_time":
@@ -73,4 +89,24 @@ def whole_report(tables: dict[str, pd.DataFrame], sheets: Path) -> str:
                 text = fill(path.read_text(encoding="utf-8"), tables, str(path))
                 parts.append(text.replace("\n## ", "\n### ").replace("# ", "## ", 1))
         parts.append(f"## {TITLES[name]}\n\n{to_markdown(tables[name])}")
+        if name == "results" and pictures is not None:
+            parts += [
+                f"![{alt}]({os.path.relpath(pictures / name, here)})\n\n*{alt}*\n"
+                for name, alt in FIGURES.items()
+                if (pictures / name).is_file()
+            ]
     return "\n".join(parts)
+
+
+def provenance(tables: dict[str, pd.DataFrame]) -> str:
+    """What made the numbers: version, commit and machine."""
+    runs = tables.get("run_time", pd.DataFrame())
+    known = {
+        name: ", ".join(runs[name].dropna().astype(str).unique()) if name in runs else ""
+        for name in ("version", "commit")
+    }
+    return (
+        f"Version {known['version'] or 'unknown'}, commit {known['commit'] or 'unknown'}; written"
+        f" {datetime.date.today()} on {platform.system()} {platform.machine()},"
+        f" {os.cpu_count()} cores.\n"
+    )

@@ -84,7 +84,8 @@ class Recorder:
         """Boundary records with the axial and lateral measures of the specimen.
 
         Axial stress and strain are positive in compression, lateral strain in extension,
-        volumetric strain in dilation.
+        volumetric strain in dilation. Strains count from the end of the confinement
+        (`Measures.start_time`).
         """
         rows = np.array(self.history)
         table = pd.DataFrame({"step": rows[:, 0].astype(int), "time_s": rows[:, 1]})
@@ -106,12 +107,14 @@ class Recorder:
         axial = -outward * 1e-3 * table[f"{load.name}_displacement_mm"] / measures.length
         table["axial_force_N"] = force
         table["axial_stress_MPa"] = force / measures.area / 1e6
-        table["axial_strain"] = axial
+        table["axial_strain"] = axial - _value_at(measures.start_time, table["time_s"], axial)
         if measures.lateral_load is not None:
             moved = 1e-3 * table[f"{measures.lateral_load}_displacement_mm"]
             lateral = moved / measures.lateral_length
+            lateral = lateral - _value_at(measures.start_time, table["time_s"], lateral)
             table["lateral_strain"] = lateral
-            table["volumetric_strain"] = lateral * (2 if problem.axisymmetric else 1) - axial
+            ways = 2 if problem.axisymmetric else 1
+            table["volumetric_strain"] = lateral * ways - table["axial_strain"]
         return table
 
     def energy_table(self) -> pd.DataFrame:
@@ -130,3 +133,8 @@ class Recorder:
         )
         values = np.concatenate(self.probes)
         return table.assign(**dict(zip(["time_s", *PROBE_COLUMNS], values.T, strict=True)))
+
+
+def _value_at(moment: float, times: pd.Series, values: pd.Series) -> float:
+    """`values` at `moment` [s], linear between the records."""
+    return float(np.interp(moment, times, values))

@@ -5,6 +5,7 @@ import numpy as np
 from lithofrac.problem import Mesh
 from lithofrac.scenes._finish import finished
 from lithofrac.scenes._gmsh import mesh_from
+from lithofrac.scenes._relax import relaxed
 from lithofrac.scenes._size import jittered
 
 SHIFT = 0.1  # of an element, by which seeds above 1 move inner nodes of a structured mesh
@@ -41,7 +42,9 @@ Physical Curve("left") = {{4}};
 Physical Surface("rock") = {{1}};
 {jittered(repr(size), size, seed)}"""
     )
-    return finished(raw.nodes, raw.triangles, raw.lines, raw.body, raw.body_names)
+    boundary = np.unique(np.concatenate(list(raw.lines.values())))
+    nodes = relaxed(raw.nodes, raw.triangles, boundary)
+    return finished(nodes, raw.triangles, raw.lines, raw.body, raw.body_names)
 
 
 def _structured(width: float, height: float, size: float, seed: int) -> Mesh:

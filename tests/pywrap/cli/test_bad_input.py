@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from lithofrac.cli import main
 
 pytestmark = pytest.mark.no_core

@@ -3,8 +3,9 @@
 import subprocess
 import sys
 
-import lithofrac
 import pytest
+
+import lithofrac
 from lithofrac.cli import COMMANDS, main
 
 pytestmark = pytest.mark.no_core

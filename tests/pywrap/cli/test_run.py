@@ -9,6 +9,7 @@ import time
 
 import pandas as pd
 import pytest
+
 from lithofrac import cli
 from lithofrac.cli import main
 from lithofrac.config import find_case, load_case
@@ -155,3 +156,30 @@ def test_the_signal_of_a_time_limit_is_given_back(tmp_path):
     main(["run", "bar_wave", *SHORT, "--out", str(tmp_path / "a"), "--quiet"])
     assert signal.getsignal(signal.SIGTERM) is before
     assert cli.INTERRUPTED == 130
+
+
+def test_a_point_is_driven_into_a_table(tmp_path):
+    out = tmp_path / "new" / "curve.parquet"
+    assert main(["point", "sandstone", "--confinement-MPa", "10", "--out", str(out)]) == 0
+    peak = pd.read_parquet(out)["axial_stress_MPa"].max()
+    assert peak == pytest.approx(187.0, rel=1e-3)  # Table 1 at 10 MPa
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (
+            ["--test", "torsion"],
+            "test 'torsion': expected one of triaxial, plane_strain, extension, tension, "
+            "stiff_confinement",
+        ),
+        (["--end-strain", "nan"], "--end-strain nan: expected a number above 0"),
+        (["--end-strain", "-1"], "--end-strain -1: expected a number above 0"),
+        (["--stiffness", "inf"], "--stiffness inf: expected a number not below 0"),
+        (["--confinement-MPa", "-1"], "confinement_MPa = -1 makes no sense in test 'triaxial'"),
+    ],
+)
+def test_a_point_that_makes_no_sense_is_refused(tmp_path, capsys, words, message):
+    assert main(["point", "sandstone", *words, "--out", str(tmp_path / "a.parquet")]) == 2
+    assert capsys.readouterr().err == f"lithofrac: {message}\n"
+    assert not list(tmp_path.iterdir())

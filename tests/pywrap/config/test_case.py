@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+
 from lithofrac.config import ConfigError, load_case
 from lithofrac.config.setting import settings, text_of
 

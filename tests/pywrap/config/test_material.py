@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from lithofrac.config import ConfigError, Material
 
 pytestmark = pytest.mark.no_core
@@ -32,7 +33,6 @@ def test_numbers_become_si():
     assert (rock.young, rock.poisson, rock.density) == (28e9, 0.25, 2800.0)
     assert (rock.tensile_strength, rock.fracture_energy) == (4e6, 100.0)
     np.testing.assert_allclose(rock.table[:, 2], [1e-3, 18e6, np.radians(40.5), np.radians(11.5)])
-    assert Material(**sandstone(reference_size_mm=2.0)).reference_size == 2e-3
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
+
 from lithofrac.config.schema import schemas, text_of
 from lithofrac.config.yaml_file import read_yaml
 

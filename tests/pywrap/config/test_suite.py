@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from lithofrac.config import ConfigError, find_case, load_suite
 
 pytestmark = pytest.mark.no_core

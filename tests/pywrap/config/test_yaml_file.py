@@ -1,6 +1,7 @@
 """Reading YAML (pywrap/lithofrac/config/yaml_file.py)."""
 
 import pytest
+
 from lithofrac.config import ConfigError
 from lithofrac.config.yaml_file import read_yaml
 

@@ -145,6 +145,17 @@ def test_missing_input_is_refused(tmp_path):
         draw("strength", [tmp_path / "lost"], tmp_path / "a.svg")
 
 
+def test_figure_of_nothing_is_refused(tmp_path):
+    with pytest.raises(DataError, match="plot strength: no input, expected results folders"):
+        draw("strength", [], tmp_path / "a.svg")
+
+
+def test_file_that_is_no_bench_curve_is_refused(tmp_path):
+    (tmp_path / "curve.parquet").touch()
+    with pytest.raises(DataError, match="not a curve of the bench"):
+        draw("single_element", [tmp_path / "curve.parquet"], tmp_path / "a.svg")
+
+
 def test_every_kind_says_what_it_is():
     for function in {**FIGURES, **TABLES}.values():
         assert function.__doc__

@@ -3,6 +3,7 @@
 from functools import cache
 
 import pytest
+
 from lithofrac.config import find_case
 from lithofrac.scenes import make_mesh, make_problem
 

@@ -6,6 +6,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+
 from lithofrac.scenes import _gmsh
 from lithofrac.scenes._rectangle import rectangle
 

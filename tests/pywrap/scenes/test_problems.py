@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from lithofrac.config import ConfigError, find_case
 from lithofrac.config.suite import load_suite
 from lithofrac.problem import Mesh

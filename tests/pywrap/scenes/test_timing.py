@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from lithofrac.scenes._timing import velocity_timing
 
 pytestmark = pytest.mark.no_core

@@ -1,0 +1,106 @@
+"""Report and sheets from the tables of a pipeline (report/write.py)."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from lithofrac.data import DataError
+from lithofrac.plots import draw
+from lithofrac.plots.draw import TABLES
+from lithofrac.report import write_report
+
+pytestmark = pytest.mark.no_core
+ROOT = Path(__file__).parents[3]
+SHEETS = ROOT / "reports" / "sheets"
+QUARTZITE = ROOT / "configs" / "materials" / "quartzite.yaml"
+
+
+@pytest.fixture
+def out(make_run, make_bench, data_folder, tmp_path):
+    """Folder of a pipeline with all tables of two runs and one bench curve."""
+    runs = [
+        make_run("sandstone_triaxial_p10", confinement=10.0),
+        make_run("sandstone_plane_strain_p10", "plane_strain", 10.0, 0.02, 1.09),
+    ]
+    bench = [make_bench("sandstone", 10)]
+    inputs = {
+        "results": [ROOT / "reports" / "bands.csv", QUARTZITE, *bench]
+        + [run / "summary.json" for run in runs],
+        "single_element": bench,
+        "tautona": [QUARTZITE],
+        "kirsch": [],
+    }
+    for name in TABLES:
+        table = tmp_path / "out" / "tables" / f"{name}.csv"
+        draw(name, inputs.get(name, runs), table, data_folder)
+    return tmp_path / "out"
+
+
+def test_report_holds_every_sheet_with_its_numbers(out):
+    write_report(out, out / "report.md", SHEETS)
+    text = (out / "report.md").read_text()
+    for sheet in SHEETS.glob("*.md"):
+        title = sheet.read_text().splitlines()[0]
+        assert f"\n#{title}\n" in text
+    assert "| sandstone_triaxial_p10 | 10 | 186.9 | 186.9 |" in text
+    assert "commit 0123456789ab" in text
+    assert "experiment: not digitised" in text
+
+
+def test_report_shows_the_figures_that_are_there(out):
+    (out / "figures").mkdir()
+    (out / "figures" / "strength.svg").touch()
+    write_report(out, out / "report.md", SHEETS)
+    text = (out / "report.md").read_text()
+    assert "](figures/strength.svg)" in text
+    assert "stress_strain.svg" not in text
+
+
+def test_every_sheet_asks_and_answers_the_same_questions():
+    for sheet in SHEETS.glob("*.md"):
+        text = sheet.read_text()
+        for part in ("Question", "Source", "Quantity", "Calibrated", "Predicted"):
+            assert f"**{part}." in text, f"{sheet.name}: {part}"
+        assert "**Acceptance, fixed beforehand.**" in text
+        assert "<!-- table:" in text
+
+
+def test_name_of_a_sheet_gives_that_sheet(out):
+    write_report(out, out / "sheets" / "2_sandstone_triaxial.md", SHEETS)
+    text = (out / "sheets" / "2_sandstone_triaxial.md").read_text()
+    assert text.startswith("# Sandstone, triaxial compression")
+    assert "Plane strain" not in text.splitlines()[0]
+
+
+def test_page_is_written_when_the_name_ends_in_html(out):
+    write_report(out, out / "summary.html", SHEETS)
+    page = (out / "summary.html").read_text()
+    assert page.startswith("<!DOCTYPE html>")
+    assert "<td>sandstone_triaxial_p10</td>" in page
+
+
+def test_marked_file_is_refreshed_in_place(out, tmp_path):
+    readme = tmp_path / "README.md"
+    readme.write_text("# Mine\n<!-- table: results -->\nstale row\n<!-- end -->\nkept\n")
+    write_report(out, readme, SHEETS)
+    text = readme.read_text()
+    assert text.startswith("# Mine\n")
+    assert text.endswith("<!-- end -->\nkept\n")
+    assert "stale row" not in text
+    assert "sandstone_triaxial_p10" in text
+
+
+def test_readme_and_committed_sheets_have_blocks_that_can_be_filled(out, tmp_path):
+    for path in [ROOT / "README.md", *SHEETS.glob("*.md")]:
+        copy = tmp_path / "copy" / path.name
+        copy.parent.mkdir(exist_ok=True)
+        copy.write_text(path.read_text())
+        write_report(out, copy, SHEETS)
+        assert re.search(r" -->\n(\| |Nothing of this kind)", copy.read_text()), path
+
+
+def test_folder_without_tables_is_refused_and_nothing_is_written(tmp_path):
+    with pytest.raises(DataError, match=r"tables: holds no \.csv"):
+        write_report(tmp_path, tmp_path / "report.md", SHEETS)
+    assert not list(tmp_path.iterdir())
