@@ -46,6 +46,13 @@ module lithofrac_contact_contact
       real(wp) :: penetration = 0.0_wp             !! deepest, over h
    end type statistics_type
 
+   !> What makes a gap large or small.
+   type :: scales_type
+      real(wp) :: h                                !! shortest edge [m]
+      real(wp) :: dt                               !! [s]
+      real(wp) :: critical                         !! largest stable step [s]
+   end type scales_type
+
    type :: contact_type
       logical :: on = .false.
       type(surfaces_type) :: surfaces
@@ -53,6 +60,8 @@ module lithofrac_contact_contact
       type(candidates_type) :: candidates
       integer, allocatable :: kind(:)              !! (n_corners)
       integer, allocatable :: face(:, :)           !! (2, n_corners)
+      real(wp), allocatable :: corner_friction(:)  !! (n_corners)
+      real(wp), allocatable :: edge_friction(:)    !! (n_edges)
       real(wp), allocatable :: tangent(:, :)       !! (2, n) edges when corners were classified
       real(wp), allocatable :: corner_impulse(:, :)  !! (2, n_corners) normal, tangential [N s]
       real(wp), allocatable :: edge_impulse(:, :)  !! (2, n_edges)
@@ -64,6 +73,8 @@ module lithofrac_contact_contact
       real(wp), allocatable :: impulse(:, :)       !! (2, n) sum on the node [N s]
       real(wp) :: work_before(2) = 0.0_wp          !! normal, friction: half step before [J]
       real(wp) :: work_after(2) = 0.0_wp           !! and after [J]
+      real(wp) :: fastest = 0.0_wp                 !! relative velocity of a pair in this step [m/s]
+      real(wp) :: deepest = 0.0_wp                 !! penetration of a pair in this step [m]
       type(statistics_type) :: statistics
    end type contact_type
 
@@ -104,7 +115,6 @@ contains
       integer, intent(out) :: code
       integer, intent(out) :: node(2)          !! boundary nodes that failed
 
-      real(wp) :: fastest
       integer :: i, sweeps
       logical :: converged
 
@@ -114,27 +124,28 @@ contains
       if (.not. all(abs(contact%surfaces%tangent) <= 1.5_wp)) return
       if (list_is_stale(contact%candidates, contact%surfaces)) call renew_list(contact)
       call turn_corners(contact)
-      call collect_pairs(contact, dt, critical, code, node)
       contact%work_before = 0.0_wp
       contact%work_after = 0.0_wp
       contact%impulse = 0.0_wp
+      contact%fastest = 0.0_wp
+      contact%deepest = 0.0_wp
+      call collect_pairs(contact, scales_type(contact%surfaces%h, dt, critical), code, node)
       if (code /= solved .or. contact%n_pairs == 0) return
       associate (pairs => contact%pairs(:contact%n_pairs), h => contact%surfaces%h)
-         fastest = 0.0_wp
-         do i = 1, contact%n_pairs
-            fastest = max(fastest, maxval(abs(relative_velocity(pairs(i), contact%v))))
-         end do
-         call solve_pairs(pairs, contact%inverse_mass, max(accuracy*fastest, fine*h/dt), &
-            merge(many_sweeps, usual_sweeps, any(pairs%gap(1) < -deep*h)), contact%v, sweeps, &
+         call solve_pairs(pairs, contact%inverse_mass, max(accuracy*contact%fastest, fine*h/dt), &
+            merge(many_sweeps, usual_sweeps, contact%deepest > deep*h), contact%v, sweeps, &
             converged)
+         contact%fastest = 0.0_wp
          do i = 1, contact%n_pairs
             call book_pair(contact, pairs(i))
-            if (all(abs(relative_velocity(pairs(i), contact%v))*dt <= longest_way*h)) cycle
+            if (contact%fastest*dt <= longest_way*h) cycle
             code = too_fast
             node = pairs(i)%node(:2)
+            return
          end do
       end associate
-      call count_step(contact%statistics, contact%n_pairs, sweeps, converged)
+      call count_step(contact%statistics, contact%n_pairs, sweeps, converged, &
+         contact%deepest/contact%surfaces%h)
    end subroutine solve_contact
 
    !> A new list of candidates; impulses go along.
@@ -169,14 +180,26 @@ contains
       call list_candidates(contact%candidates, contact%surfaces)
       n_corners = size(contact%candidates%corner, 2)
       n_edges = size(contact%candidates%edge, 2)
-      if (allocated(contact%kind)) deallocate (contact%kind, contact%face, contact%pairs)
+      if (allocated(contact%kind)) then
+         deallocate (contact%kind, contact%face, contact%pairs)
+         deallocate (contact%corner_friction, contact%edge_friction)
+      end if
       allocate (contact%kind(n_corners), contact%face(2, n_corners))
-      allocate (contact%pairs(n_corners + n_edges))
+      allocate (contact%corner_friction(n_corners), contact%edge_friction(n_edges))
+      allocate (contact%pairs(n_corners + n_edges + 1))
       contact%corner_impulse = spread([0.0_wp, 0.0_wp], 2, n_corners)
       contact%edge_impulse = spread([0.0_wp, 0.0_wp], 2, n_edges)
-      do i = 1, n_corners
-         call classify_corner(contact, i)
-      end do
+      associate (list => contact%candidates, prev => contact%surfaces%prev)
+         do i = 1, n_corners
+            call classify_corner(contact, i)
+            contact%corner_friction(i) = friction_of(contact, [prev(list%corner(1, i)), &
+               list%corner(1, i)], [prev(list%corner(2, i)), list%corner(2, i)])
+         end do
+         do i = 1, n_edges
+            contact%edge_friction(i) = friction_of(contact, [prev(list%edge(1, i)), &
+               list%edge(1, i)], [list%edge(2, i)])
+         end do
+      end associate
    end subroutine prepare_list
 
    !> Copy the values of pairs that are in both lists; both are sorted.
@@ -237,50 +260,59 @@ contains
    end subroutine turn_corners
 
    !> Pairs that may close in this step: corners first, then nodes over edges.
-   subroutine collect_pairs(contact, dt, critical, code, node)
+   subroutine collect_pairs(contact, scales, code, node)
       type(contact_type), intent(inout) :: contact
-      real(wp), intent(in) :: dt
-      real(wp), intent(in) :: critical
+      type(scales_type), intent(in) :: scales
       integer, intent(out) :: code
       integer, intent(out) :: node(2)
 
-      logical :: is_corner(0:size(contact%kind))
-      real(wp) :: arm(2)
-      type(pair_type) :: pair
+      logical :: is_corner(0:size(contact%kind)), collides
+      real(wp) :: arm(2), d(2), speed
       integer :: i
 
       code = solved
       node = 1
       contact%n_pairs = 0
-      is_corner(0) = .false.
-      associate (surfaces => contact%surfaces, list => contact%candidates, v => contact%v)
-         do i = 1, size(contact%kind)
-            is_corner(i) = .false.
-            if (contact%kind(i) == no_corner) cycle
-            associate (a => list%corner(1, i), b => list%corner(2, i))
-               arm = offset(surfaces, a, b)
-               if (norm2(arm) > max(corner_reach*surfaces%h, &
-                  steps_ahead*dt*norm2(contact%before(:, a) - contact%before(:, b)))) cycle
-               is_corner(i) = .true.
-               pair = corner_pair(surfaces, a, b, contact%kind(i), contact%face(:, i), &
-                  arm + dt*(v(:, a) - v(:, b)))
+      is_corner = .false.
+      associate (list => contact%candidates, v => contact%v, before => contact%before)
+         do i = 1, size(contact%kind) + size(list%edge, 2)
+            associate (pair => contact%pairs(contact%n_pairs + 1), &
+                  k => i - size(contact%kind))
+               if (k <= 0) then
+                  if (contact%kind(i) == no_corner) cycle
+                  associate (a => list%corner(1, i), b => list%corner(2, i))
+                     arm = offset(contact%surfaces, a, b)
+                     d = before(:, a) - before(:, b)
+                     if (arm(1)*arm(1) + arm(2)*arm(2) > max((corner_reach*scales%h)**2, &
+                        (steps_ahead*scales%dt)**2*(d(1)*d(1) + d(2)*d(2)))) cycle
+                     is_corner(i) = .true.
+                     call corner_pair(contact%surfaces, a, b, contact%kind(i), &
+                        contact%face(:, i), arm, arm + scales%dt*(v(:, a) - v(:, b)), pair)
+                  end associate
+                  if (pair%n_faces == 0) cycle
+                  pair%candidate = i
+                  pair%friction = contact%corner_friction(i)
+                  call complete_pair(pair, scales, contact%inverse_mass, v, &
+                     contact%corner_impulse(:, i), speed, collides)
+               else
+                  if (is_corner(list%corner_at(1, k)) .or. is_corner(list%corner_at(2, k))) cycle
+                  call edge_pair(contact%surfaces, list%edge(1, k), list%edge(2, k), pair)
+                  if (pair%n_faces == 0) cycle
+                  pair%candidate = -k
+                  pair%friction = contact%edge_friction(k)
+                  call complete_pair(pair, scales, contact%inverse_mass, v, &
+                     contact%edge_impulse(:, k), speed, collides)
+               end if
+               if (collides) then
+                  code = prescribed_collision
+                  node = pair%node(:2)
+                  exit
+               end if
                if (pair%n_faces == 0) cycle
-               pair%candidate = i
-               pair%friction = friction_of(contact, [surfaces%prev(a), a], [surfaces%prev(b), b])
+               contact%fastest = max(contact%fastest, speed)
+               contact%deepest = max(contact%deepest, -minval(pair%gap(:pair%n_faces)))
             end associate
-            call keep_pair(contact, pair, contact%corner_impulse(:, i), dt, critical, code, node)
-            if (code /= solved) return
-         end do
-         do i = 1, size(list%edge, 2)
-            if (is_corner(list%corner_at(1, i)) .or. is_corner(list%corner_at(2, i))) cycle
-            associate (a => list%edge(1, i), b => list%edge(2, i))
-               pair = edge_pair(surfaces, a, b)
-               if (pair%n_faces == 0) cycle
-               pair%candidate = -i
-               pair%friction = friction_of(contact, [surfaces%prev(a), a], [b, b])
-            end associate
-            call keep_pair(contact, pair, contact%edge_impulse(:, i), dt, critical, code, node)
-            if (code /= solved) return
+            contact%n_pairs = contact%n_pairs + 1
          end do
       end associate
       contact%corner_impulse = 0.0_wp
@@ -290,54 +322,50 @@ contains
    !> Choice: where faces of different friction meet in a corner, the largest holds.
    pure function friction_of(contact, first, second) result(friction)
       type(contact_type), intent(in) :: contact
-      integer, intent(in) :: first(2)    !! edges at the one side
-      integer, intent(in) :: second(2)   !! and at the other
+      integer, intent(in) :: first(:)    !! edges at the one side
+      integer, intent(in) :: second(:)   !! and at the other
       real(wp) :: friction
 
       friction = maxval(contact%friction(contact%surfaces%tag(first), &
          contact%surfaces%tag(second)))
    end function friction_of
 
-   !> Complete a pair and add it to those of the step.
-   subroutine keep_pair(contact, pair, impulse, dt, critical, code, node)
-      type(contact_type), intent(inout) :: contact
+   !> Compliance, bias and first guess of a pair; faces along which nothing can yield are dropped.
+   pure subroutine complete_pair(pair, scales, inverse_mass, v, impulse, speed, collides)
       type(pair_type), intent(inout) :: pair
+      type(scales_type), intent(in) :: scales
+      real(wp), intent(in), contiguous :: inverse_mass(:, :)
+      real(wp), intent(in), contiguous :: v(:, :)
       real(wp), intent(in) :: impulse(2)   !! normal and tangential, of the step before [N s]
-      real(wp), intent(in) :: dt
-      real(wp), intent(in) :: critical
-      integer, intent(inout) :: code
-      integer, intent(inout) :: node(2)
+      real(wp), intent(out) :: speed       !! predicted, relative [m/s]
+      logical, intent(out) :: collides     !! motions that may not yield meet
 
-      real(wp) :: w(2)
+      real(wp) :: w(2), d(2), largest
       integer :: k, face
 
+      collides = .false.
       w = 0.0_wp
       do k = 1, pair%n_nodes
-         w = w + pair%weight(k)**2*contact%inverse_mass(:, pair%node(k))
+         w = w + pair%weight(k)**2*inverse_mass(:, pair%node(k))
       end do
+      largest = max(w(1), w(2))
+      d = relative_velocity(pair, v)
+      speed = max(abs(d(1)), abs(d(2)))
       do face = pair%n_faces, 1, -1
-         associate (n => pair%normal(:, face), h => contact%surfaces%h)
-            pair%bias(face) = feasible_bias(pair%gap(face), h, dt, critical)
-            contact%statistics%penetration = max(contact%statistics%penetration, &
-               -pair%gap(face)/h)
-            if (dot_product(n, w*n) > rigid*maxval(w)) cycle
-            if ((dot_product(relative_velocity(pair, contact%v), n) + pair%bias(face))*dt &
-                  < -meeting*h) then
-               code = prescribed_collision
-               node = pair%node(:2)
-               return
-            end if
+         associate (n => pair%normal(:, face))
+            pair%bias(face) = feasible_bias(pair%gap(face), scales%h, scales%dt, scales%critical)
+            if (n(1)*n(1)*w(1) + n(2)*n(2)*w(2) > rigid*largest) cycle
+            collides = collides .or. (n(1)*d(1) + n(2)*d(2) + pair%bias(face))*scales%dt &
+               < -meeting*scales%h
          end associate
          call drop_face(pair, face)
       end do
-      if (pair%n_faces == 0) return
-      pair%compliance = max(w, floor*maxval(w))
+      pair%compliance = max(w, floor*largest)
       associate (n => pair%normal(:, 1))
-         pair%impulse = impulse(1)*n + impulse(2)*[-n(2), n(1)]
+         pair%impulse(1) = impulse(1)*n(1) - impulse(2)*n(2)
+         pair%impulse(2) = impulse(1)*n(2) + impulse(2)*n(1)
       end associate
-      contact%n_pairs = contact%n_pairs + 1
-      contact%pairs(contact%n_pairs) = pair
-   end subroutine keep_pair
+   end subroutine complete_pair
 
    !> Forget a face along which nothing can yield.
    pure subroutine drop_face(pair, face)
@@ -357,27 +385,34 @@ contains
       type(contact_type), intent(inout) :: contact
       type(pair_type), intent(in) :: pair
 
-      real(wp) :: normal(2), p(2), d(2, 2)
+      real(wp) :: p(2), before(2), after(2), pressure(2), friction(2)
       integer :: k
 
-      if (.not. any(abs(pair%impulse) > 0.0_wp)) return
-      normal = pair%normal(:, 1)
-      p(1) = dot_product(pair%impulse, normal)
-      p(2) = normal(1)*pair%impulse(2) - normal(2)*pair%impulse(1)
-      if (pair%candidate > 0) contact%corner_impulse(:, pair%candidate) = p
-      if (pair%candidate < 0) contact%edge_impulse(:, -pair%candidate) = p
+      after = relative_velocity(pair, contact%v)
+      contact%fastest = max(contact%fastest, abs(after(1)), abs(after(2)))
+      p = pair%impulse
+      if (.not. max(abs(p(1)), abs(p(2))) > 0.0_wp) return
       do k = 1, pair%n_nodes
          associate (sum_of => contact%impulse(:, pair%node(k)))
-            sum_of = sum_of + pair%weight(k)*pair%impulse
+            sum_of(1) = sum_of(1) + pair%weight(k)*p(1)
+            sum_of(2) = sum_of(2) + pair%weight(k)*p(2)
          end associate
       end do
-      d(:, 1) = relative_velocity(pair, contact%before)
-      d(:, 2) = relative_velocity(pair, contact%v)
-      p = pressure_of(pair)
-      contact%work_before = contact%work_before &
-         + 0.5_wp*[dot_product(p, d(:, 1)), dot_product(pair%impulse - p, d(:, 1))]
-      contact%work_after = contact%work_after &
-         + 0.5_wp*[dot_product(p, d(:, 2)), dot_product(pair%impulse - p, d(:, 2))]
+      before = relative_velocity(pair, contact%before)
+      pressure = pressure_of(pair)
+      friction = p - pressure
+      contact%work_before(1) = contact%work_before(1) + 0.5_wp*dot_product(pressure, before)
+      contact%work_before(2) = contact%work_before(2) + 0.5_wp*dot_product(friction, before)
+      contact%work_after(1) = contact%work_after(1) + 0.5_wp*dot_product(pressure, after)
+      contact%work_after(2) = contact%work_after(2) + 0.5_wp*dot_product(friction, after)
+      associate (n => pair%normal(:, 1))
+         p = [n(1)*p(1) + n(2)*p(2), n(1)*p(2) - n(2)*p(1)]
+      end associate
+      if (pair%candidate > 0) then
+         contact%corner_impulse(:, pair%candidate) = p
+      else
+         contact%edge_impulse(:, -pair%candidate) = p
+      end if
    end subroutine book_pair
 
    !> The part of an impulse that is pressure; the rest is friction.
@@ -406,12 +441,14 @@ contains
       p = dot_product(pair%impulse, pair%normal(:, face))*pair%normal(:, face)
    end function pressure_of
 
-   pure subroutine count_step(statistics, n_pairs, sweeps, converged)
+   pure subroutine count_step(statistics, n_pairs, sweeps, converged, penetration)
       type(statistics_type), intent(inout) :: statistics
       integer, intent(in) :: n_pairs
       integer, intent(in) :: sweeps
       logical, intent(in) :: converged
+      real(wp), intent(in) :: penetration   !! over h
 
+      statistics%penetration = max(statistics%penetration, penetration)
       statistics%pairs_max = max(statistics%pairs_max, n_pairs)
       statistics%steps = statistics%steps + 1
       statistics%sweeps = statistics%sweeps + sweeps

@@ -9,17 +9,17 @@ module lithofrac_contact_multipliers
    implicit none
    private
 
-   public :: add_impulse, relative_velocity, solve_pairs
+   public :: relative_velocity, solve_pairs
 
 contains
 
    !> Find the impulses; velocities come out with them.
    pure subroutine solve_pairs(pairs, inverse_mass, tolerance, most_sweeps, v, sweeps, converged)
       type(pair_type), intent(inout) :: pairs(:)    !! `impulse` in: a guess, out: the solution
-      real(wp), intent(in) :: inverse_mass(:, :)    !! (2, n) [1/kg]
+      real(wp), intent(in), contiguous :: inverse_mass(:, :)  !! (2, n) [1/kg]
       real(wp), intent(in) :: tolerance             !! change of a relative velocity [m/s]
       integer, intent(in) :: most_sweeps
-      real(wp), intent(inout) :: v(:, :)            !! (2, n) in: without contact, out: with [m/s]
+      real(wp), intent(inout), contiguous :: v(:, :)  !! (2, n) without contact, then with [m/s]
       integer, intent(out) :: sweeps
       logical, intent(out) :: converged
 
@@ -27,19 +27,20 @@ contains
       integer :: i, k
 
       do i = 1, size(pairs)
-         if (all(abs(pairs(i)%impulse) <= 0.0_wp)) cycle
-         call add_impulse(pairs(i), pairs(i)%impulse, inverse_mass, v)
+         p = pairs(i)%impulse
+         if (p(1)*p(1) + p(2)*p(2) > 0.0_wp) call add_impulse(pairs(i), p, inverse_mass, v)
       end do
       converged = .false.
       do sweeps = 1, most_sweeps
          change = 0.0_wp
          do k = 1, size(pairs)
             i = merge(k, size(pairs) + 1 - k, modulo(sweeps, 2) == 1)
-            p = solution(pairs(i), v) - pairs(i)%impulse
-            if (.not. any(abs(p) > 0.0_wp)) cycle
+            call solve_pair(pairs(i), v, p)
+            if (.not. max(abs(p(1)), abs(p(2))) > 0.0_wp) cycle
             pairs(i)%impulse = pairs(i)%impulse + p
             call add_impulse(pairs(i), p, inverse_mass, v)
-            change = max(change, maxval(abs(p)*pairs(i)%compliance))
+            change = max(change, abs(p(1))*pairs(i)%compliance(1), &
+               abs(p(2))*pairs(i)%compliance(2))
          end do
          converged = change <= tolerance
          if (converged) return
@@ -47,33 +48,35 @@ contains
       sweeps = most_sweeps
    end subroutine solve_pairs
 
-   !> Impulse of one pair when all others keep theirs.
-   pure function solution(pair, v) result(p)
+   !> Change of the impulse of one pair when all others keep theirs.
+   pure subroutine solve_pair(pair, v, change)
       type(pair_type), intent(in) :: pair
-      real(wp), intent(in) :: v(:, :)
-      real(wp) :: p(2)
+      real(wp), intent(in), contiguous :: v(:, :)
+      real(wp), intent(out) :: change(2)            !! [N s]
 
       real(wp) :: d0(2)
 
       d0 = relative_velocity(pair, v) - pair%compliance*pair%impulse
       if (pair%n_faces == 1) then
-         p = one_face(d0, pair%normal(:, 1), pair%bias(1), pair%friction, pair%compliance)
+         change = one_face(d0, pair%normal(:, 1), pair%bias(1), pair%friction, pair%compliance)
       else
-         p = two_faces(d0, pair%normal, pair%bias, pair%friction, pair%compliance)
+         change = two_faces(d0, pair%normal, pair%bias, pair%friction, pair%compliance)
       end if
-   end function solution
+      change = change - pair%impulse
+   end subroutine solve_pair
 
    !> Velocity of the node against what it may touch [m/s].
    pure function relative_velocity(pair, v) result(d)
       type(pair_type), intent(in) :: pair
-      real(wp), intent(in) :: v(:, :)
+      real(wp), intent(in), contiguous :: v(:, :)   !! (2, n) [m/s]
       real(wp) :: d(2)
 
       integer :: k
 
       d = 0.0_wp
       do k = 1, pair%n_nodes
-         d = d + pair%weight(k)*v(:, pair%node(k))
+         d(1) = d(1) + pair%weight(k)*v(1, pair%node(k))
+         d(2) = d(2) + pair%weight(k)*v(2, pair%node(k))
       end do
    end function relative_velocity
 
@@ -81,14 +84,15 @@ contains
    pure subroutine add_impulse(pair, p, inverse_mass, v)
       type(pair_type), intent(in) :: pair
       real(wp), intent(in) :: p(2)                  !! [N s]
-      real(wp), intent(in) :: inverse_mass(:, :)
-      real(wp), intent(inout) :: v(:, :)
+      real(wp), intent(in), contiguous :: inverse_mass(:, :)
+      real(wp), intent(inout), contiguous :: v(:, :)
 
       integer :: k
 
       do k = 1, pair%n_nodes
          associate (node => pair%node(k))
-            v(:, node) = v(:, node) + inverse_mass(:, node)*(pair%weight(k)*p)
+            v(1, node) = v(1, node) + inverse_mass(1, node)*(pair%weight(k)*p(1))
+            v(2, node) = v(2, node) + inverse_mass(2, node)*(pair%weight(k)*p(2))
          end associate
       end do
    end subroutine add_impulse

@@ -43,15 +43,17 @@ module lithofrac_contact_pairs
 contains
 
    !> Node `i` against edge `j`.
-   pure function edge_pair(surfaces, i, j) result(pair)
+   pure subroutine edge_pair(surfaces, i, j, pair)
       type(surfaces_type), intent(in) :: surfaces
       integer, intent(in) :: i
       integer, intent(in) :: j
-      type(pair_type) :: pair
+      type(pair_type), intent(inout) :: pair   !! `n_faces` 0 when they cannot touch now
 
       real(wp) :: arm(2), share, gap
 
-      arm = offset(surfaces, i, j)
+      pair%n_faces = 0
+      arm = (surfaces%reference(:, i) - surfaces%reference(:, j)) &
+         + (surfaces%u(:, i) - surfaces%u(:, j))
       associate (tangent => surfaces%tangent(:, j), h => surfaces%h)
          gap = arm(1)*tangent(2) - arm(2)*tangent(1)
          if (.not. (gap >= -depth*h .and. gap <= reach*h)) return
@@ -61,12 +63,13 @@ contains
             if (is_outside_neighbour(surfaces, i, j, gap)) return
          end if
          pair%n_faces = 1
+         pair%n_nodes = 3
          pair%node(:3) = [i, j, surfaces%next(j)]
          pair%weight(:3) = [1.0_wp, share - 1.0_wp, -share]
          pair%normal(:, 1) = [tangent(2), -tangent(1)]
          pair%gap(1) = gap
       end associate
-   end function edge_pair
+   end subroutine edge_pair
 
    !> Behind edge `j` but less far behind the next face round a convex corner: then the node is
    !> outside through that face and does not violate edge `j`.
@@ -99,40 +102,41 @@ contains
    end function across
 
    !> Node `i` against node `k`, whose wedges are of `kind` with limiting faces `face`.
-   pure function corner_pair(surfaces, i, k, kind, face, predicted) result(pair)
+   pure subroutine corner_pair(surfaces, i, k, kind, face, arm, predicted, pair)
       type(surfaces_type), intent(in) :: surfaces
       integer, intent(in) :: i
       integer, intent(in) :: k
       integer, intent(in) :: kind
       integer, intent(in) :: face(2)
-      real(wp), intent(in) :: predicted(2)   !! offset from k to i after the step, unhindered [m]
-      type(pair_type) :: pair
+      real(wp), intent(in) :: arm(2)         !! offset from k to i [m]
+      real(wp), intent(in) :: predicted(2)   !! the same after the step, unhindered [m]
+      type(pair_type), intent(inout) :: pair !! `n_faces` 0 when they cannot touch now
 
-      real(wp) :: arm(2), normal(2, 2), gap(2), chosen(2)
+      real(wp) :: normal(2, 2), gap(2), chosen(2)
       integer :: use_face
 
+      pair%n_faces = 0
       if (kind == no_corner) return
-      arm = offset(surfaces, i, k)
       normal(:, 1) = face_normal(surfaces, i, k, face(1))
       normal(:, 2) = face_normal(surfaces, i, k, face(2))
       select case (kind)
       case (both_faces)
-         gap = matmul(arm, normal)
+         gap = arm(1)*normal(1, :) + arm(2)*normal(2, :)
          if (is_in_reach(surfaces, gap(1)) .and. is_in_reach(surfaces, gap(2))) then
-            pair = at_two_faces(surfaces, i, k, face)
+            call stand_at_two_faces(surfaces, i, k, face, arm, pair)
             pair%normal = normal
             pair%gap = gap
          else if (is_in_reach(surfaces, gap(1))) then
-            pair = at_face(surfaces, i, k, face(1), normal(:, 1), gap(1))
+            call stand_at_face(surfaces, i, k, face(1), arm, normal(:, 1), gap(1), pair)
          else if (is_in_reach(surfaces, gap(2))) then
-            pair = at_face(surfaces, i, k, face(2), normal(:, 2), gap(2))
+            call stand_at_face(surfaces, i, k, face(2), arm, normal(:, 2), gap(2), pair)
          end if
          return
       case (flat_face)
          use_face = merge(face(2), face(1), is_over(surfaces, i, k, face(2), arm))
          chosen = face_normal(surfaces, i, k, use_face)
          if (abs(normal(1, 1)*normal(2, 2) - normal(2, 1)*normal(1, 2)) > turned) then
-            chosen = (normal(:, 1) + normal(:, 2))/norm2(normal(:, 1) + normal(:, 2))
+            chosen = unit(normal(:, 1) + normal(:, 2))
          end if
       case default
          call choose_normal(surfaces, normal, face, arm, predicted, chosen, use_face)
@@ -142,9 +146,9 @@ contains
       end select
       gap(1) = dot_product(arm, chosen)
       if (is_in_reach(surfaces, gap(1))) then
-         pair = at_face(surfaces, i, k, use_face, chosen, gap(1))
+         call stand_at_face(surfaces, i, k, use_face, arm, chosen, gap(1), pair)
       end if
-   end function corner_pair
+   end subroutine corner_pair
 
    !> Of the normals between two limits the one that is kindest to `wanted`: a limit, or the
    !> direction between the nodes when that is between the limits. Others would have a moment.
@@ -162,13 +166,20 @@ contains
       limit = merge(2, 1, dot_product(normal(:, 2), wanted) > dot_product(normal(:, 1), wanted))
       use_face = face(limit)
       chosen = normal(:, limit)
-      if (norm2(arm) <= separate*surfaces%h) return
+      if (sum(arm*arm) <= (separate*surfaces%h)**2) return
       if (normal(1, 1)*arm(2) - normal(2, 1)*arm(1) <= 0.0_wp) return
       if (arm(1)*normal(2, 2) - arm(2)*normal(1, 2) <= 0.0_wp) return
-      if (dot_product(arm, wanted) <= norm2(arm)*dot_product(chosen, wanted)) return
+      if (dot_product(unit(arm), wanted) <= dot_product(chosen, wanted)) return
       use_face = 0
-      chosen = arm/norm2(arm)
+      chosen = unit(arm)
    end subroutine choose_normal
+
+   pure function unit(vector)
+      real(wp), intent(in) :: vector(2)
+      real(wp) :: unit(2)
+
+      unit = vector/sqrt(vector(1)*vector(1) + vector(2)*vector(2))
+   end function unit
 
    pure function is_in_reach(surfaces, gap)
       type(surfaces_type), intent(in) :: surfaces
@@ -228,14 +239,15 @@ contains
 
    !> A pair along one normal, its reaction shared over the edge so that it has no moment;
    !> face 0 is a normal that belongs to no edge.
-   pure function at_face(surfaces, i, k, face, normal, gap) result(pair)
+   pure subroutine stand_at_face(surfaces, i, k, face, arm, normal, gap, pair)
       type(surfaces_type), intent(in) :: surfaces
       integer, intent(in) :: i
       integer, intent(in) :: k
       integer, intent(in) :: face
+      real(wp), intent(in) :: arm(2)         !! from k to i [m]
       real(wp), intent(in) :: normal(2)
       real(wp), intent(in) :: gap
-      type(pair_type) :: pair
+      type(pair_type), intent(inout) :: pair
 
       real(wp) :: share
       integer :: edge
@@ -248,7 +260,7 @@ contains
       pair%weight(:2) = [1.0_wp, -1.0_wp]
       if (face == 0) return
       edge = edge_of(surfaces, i, k, face)
-      share = dot_product(offset(surfaces, i, k), surfaces%tangent(:, edge))/surfaces%length(edge)
+      share = dot_product(arm, surfaces%tangent(:, edge))/surfaces%length(edge)
       select case (face)
       case (before_first)
          pair%node(3) = edge
@@ -263,18 +275,19 @@ contains
          pair%node(3) = surfaces%next(edge)
          pair%weight(:3) = [1.0_wp, share - 1.0_wp, -share]
       end select
-   end function at_face
+   end subroutine stand_at_face
 
    !> A pair at both faces of a re-entrant corner; the reaction is shared by the three nodes of
    !> the corner so that it acts where the other node stands.
-   pure function at_two_faces(surfaces, i, k, face) result(pair)
+   pure subroutine stand_at_two_faces(surfaces, i, k, face, arm, pair)
       type(surfaces_type), intent(in) :: surfaces
       integer, intent(in) :: i
       integer, intent(in) :: k
       integer, intent(in) :: face(2)
-      type(pair_type) :: pair
+      real(wp), intent(in) :: arm(2)         !! from k to i [m]
+      type(pair_type), intent(inout) :: pair
 
-      real(wp) :: arm(2), before(2), after(2), share(2), determinant
+      real(wp) :: before(2), after(2), share(2), determinant
       integer :: corner
 
       pair%n_faces = 2
@@ -283,10 +296,8 @@ contains
       pair%weight(:2) = [1.0_wp, -1.0_wp]
       if (all(face == [before_second, after_second])) then
          corner = k
-         arm = offset(surfaces, i, k)
       else if (all(face == [before_first, after_first])) then
          corner = i
-         arm = offset(surfaces, k, i)
       else
          return
       end if
@@ -296,12 +307,11 @@ contains
       share = [arm(1)*after(2) - arm(2)*after(1), before(1)*arm(2) - before(2)*arm(1)]
       if (.not. sum(abs(share)) <= largest_share*abs(determinant)) return
       share = share/determinant
-      if (corner == i) share = -share
       pair%n_nodes = 4
       pair%node(3:4) = [surfaces%prev(corner), surfaces%next(corner)]
       pair%weight(merge(1, 2, corner == i)) = pair%weight(merge(1, 2, corner == i)) + sum(share)
       pair%weight(3:4) = -share
-   end function at_two_faces
+   end subroutine stand_at_two_faces
 
    !> Speed that a closed gap may still have [m/s].
    !>

@@ -7,6 +7,7 @@ module lithofrac_run_checkpoint
    use lithofrac_base_status, only: bad_checkpoint, set_failure, status_type
    use lithofrac_contact_contact, only: contact_type, prepare_list
    use lithofrac_contact_surfaces, only: update_shape
+   use lithofrac_run_contact_step, only: bring_masses
    use lithofrac_run_model, only: model_type
    implicit none
    private
@@ -67,6 +68,7 @@ contains
          call set_failure(status, bad_checkpoint, "checkpoint: it belongs to another model")
          return
       end if
+      if (model%contact%on) call bring_masses(model)
       model%started = .true.
    end subroutine restore
 

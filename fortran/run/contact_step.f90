@@ -11,9 +11,18 @@ module lithofrac_run_contact_step
    implicit none
    private
 
-   public :: book_contact, close_contacts, note_velocities
+   public :: bring_masses, book_contact, close_contacts, note_velocities
 
 contains
+
+   !> Masses of the boundary nodes, once no load will change any more.
+   subroutine bring_masses(model)
+      type(model_type), intent(inout) :: model
+
+      associate (contact => model%contact)
+         contact%inverse_mass = model%fields%inverse_mass(:, contact%surfaces%node)
+      end associate
+   end subroutine bring_masses
 
    !> Keep the velocities of the half step that ends.
    pure subroutine note_velocities(model)
@@ -40,7 +49,6 @@ contains
             associate (node => contact%surfaces%node(i))
                contact%surfaces%u(:, i) = fields%u(:, node)
                contact%v(:, i) = fields%v(:, node)
-               contact%inverse_mass(:, i) = fields%inverse_mass(:, node)
             end associate
          end do
          call solve_contact(contact, model%dt, model%critical, code, pair)

@@ -10,7 +10,8 @@ module lithofrac_run_step
    use lithofrac_mechanics_blocks, only: assemble
    use lithofrac_mechanics_internal_force, only: chunk_force, failure_type
    use lithofrac_mechanics_loads, only: apply_pressure, apply_velocity, work_after, work_before
-   use lithofrac_run_contact_step, only: book_contact, close_contacts, note_velocities
+   use lithofrac_run_contact_step, only: bring_masses, book_contact, close_contacts, &
+      note_velocities
    use lithofrac_run_damping, only: fit_affine, rayleigh_frequency
    use lithofrac_run_model, only: model_type
    use lithofrac_run_node_update, only: sum_moments, update_affine, update_ground, &
@@ -294,6 +295,7 @@ contains
          call refuse_overlap(surfaces, model%mesh, status)
       end associate
       if (status%code /= ok) return
+      call bring_masses(model)
       call close_contacts(model, status)
       do run = 1, model%blocks%n_runs
          call sum_run(model, run)
