@@ -7,6 +7,7 @@ module lithofrac_run_contact_step
    use lithofrac_base_status, only: bad_contact, set_failure, status_type
    use lithofrac_contact_contact, only: prescribed_collision, solve_contact, solved, too_fast
    use lithofrac_run_model, only: model_type
+   use lithofrac_run_node_update, only: n_sums
    use lithofrac_run_settings, only: no_damping, relative_to_affine
    implicit none
    private
@@ -43,6 +44,7 @@ contains
       type(status_type), intent(out) :: status
 
       integer :: i, code, pair(2)
+      real(wp) :: sums(n_sums)
 
       associate (contact => model%contact, fields => model%fields)
          do i = 1, contact%surfaces%n
@@ -56,45 +58,46 @@ contains
             call explain(model, code, contact%surfaces%node(pair), status)
             return
          end if
-         model%sums(:, model%blocks%n_runs + 1) = 0.0_wp
+         sums = 0.0_wp
          do i = 1, contact%surfaces%n
             associate (node => contact%surfaces%node(i))
-               if (any(abs(contact%impulse(:, i)) > 0.0_wp)) call correct(model, i, node)
                fields%contact(:, node) = contact%impulse(:, i)/model%dt
+               if (.not. maxval(abs(contact%impulse(:, i))) > 0.0_wp) cycle
+               call correct_sums(model, node, contact%before(:, i), &
+                  contact%v(:, i) - fields%v(:, node), sums)
+               fields%v(:, node) = contact%v(:, i)
             end associate
          end do
+         model%sums(:, model%blocks%n_runs + 1) = sums
       end associate
    end subroutine close_contacts
 
-   !> Velocity of one node, and the sums that it is part of.
-   subroutine correct(model, i, node)
-      type(model_type), intent(inout) :: model
-      integer, intent(in) :: i       !! boundary node
-      integer, intent(in) :: node    !! its number in the mesh
+   !> What a change of velocity adds to kinetic energy and to the power of the damping.
+   pure subroutine correct_sums(model, node, before, change, sums)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: node
+      real(wp), intent(in) :: before(2)      !! velocity of the half step before [m/s]
+      real(wp), intent(in) :: change(2)      !! of the velocity after [m/s]
+      real(wp), intent(inout) :: sums(n_sums)
 
-      real(wp) :: change(2), drag(2), arm(2)
-      integer :: body
+      real(wp) :: arm(2), drag(2), slip(2)
 
-      body = model%mesh%body_of_node(node)
-      associate (fields => model%fields, before => model%contact%before(:, i), &
-            sums => model%sums(:, model%blocks%n_runs + 1))
-         change = model%contact%v(:, i) - fields%v(:, node)
-         select case (model%settings%damping)
-         case (no_damping)
-            drag = 0.0_wp
-         case (relative_to_affine)
-            arm = model%mesh%nodes(:, node) + fields%u(:, node) - model%affine(body)%centre
-            drag = -model%alpha(body)*fields%free_mass(:, node)*(before &
-               - model%affine(body)%velocity - matmul(model%affine(body)%gradient, arm))
-         case default
-            drag = -0.5_wp*model%alpha(body)*fields%free_mass(:, node) &
-               *(before + fields%v(:, node))
-         end select
-         sums(1) = sums(1) + 0.5_wp*fields%mass(node)*dot_product(before, change)
-         sums(3) = sums(3) + dot_product(drag, change)
-         fields%v(:, node) = model%contact%v(:, i)
+      associate (body => model%mesh%body_of_node(node), fields => model%fields)
+         sums(1) = sums(1) &
+            + 0.5_wp*fields%mass(node)*(before(1)*change(1) + before(2)*change(2))
+         if (model%settings%damping == no_damping) return
+         if (model%settings%damping == relative_to_affine) then
+            associate (fit => model%affine(body))
+               arm = model%mesh%nodes(:, node) + fields%u(:, node) - fit%centre
+               slip = before - fit%velocity - fit%gradient(:, 1)*arm(1) - fit%gradient(:, 2)*arm(2)
+            end associate
+         else
+            slip = 0.5_wp*(before + fields%v(:, node))
+         end if
+         drag = -model%alpha(body)*fields%free_mass(:, node)*slip
+         sums(3) = sums(3) + drag(1)*change(1) + drag(2)*change(2)
       end associate
-   end subroutine correct
+   end subroutine correct_sums
 
    !> Work of the impulses of the step that ends, half of it on either side of its time.
    pure subroutine book_contact(model)

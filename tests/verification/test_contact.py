@@ -8,6 +8,7 @@ from contact_models import cut_all_edges, join, moved, split
 from models import Elastic, hold, problem, rectangle
 
 from lithofrac.core import CoreError, Run
+from lithofrac.kernels import boundary_of
 from lithofrac.problem import Contact, Damping, PressureLoad, Ramp
 
 pytestmark = pytest.mark.verification
@@ -152,6 +153,21 @@ def test_patch_of_non_matching_meshes_is_within_one_percent(below, above):
     print(f"{below}/{above}: max {abs(error).max():.2e}, rms {np.sqrt((error**2).mean()):.2e}")
     assert abs(error).max() < 0.01
     assert np.sqrt((error**2).mean()) < 0.003
+
+
+def test_patch_of_stacked_cylinders_is_exact():
+    """Axisymmetry: matching discs under uniaxial stress, masses and impulses per radian."""
+    material = Elastic(young=1.0, poisson=0.0, density=1.0)
+    disc = rectangle(6, 3, 1.0, 0.5, jitter=0.2)
+    mesh = join(low=disc, high=moved(disc, (0.0, 0.5)))
+    held = (("low.bottom", 1), ("high.top", 1), ("low.left", 0), ("high.left", 0))
+    loads = tuple(hold(name, mesh.nodes_of(name), axis) for name, axis in held)
+    run = Run(contact_problem(mesh, material, axisymmetric=True, velocity_loads=loads))
+    u = uniform_strain(mesh, 0.0, -1e-3)
+    run.set_motion(u, 0 * u)
+    run.advance(2000)
+    stress = run.elements(np.arange(len(mesh.triangles))).stress
+    assert abs(stress - [0.0, -1e-3, 0.0, 0.0]).max() < 1e-10 * 1e-3
 
 
 # --- friction -----------------------------------------------------------------------------------
@@ -324,6 +340,20 @@ def test_a_crack_that_sticks_does_not_move(factor):
     assert run.contact_statistics().unconverged_steps == 0
 
 
+@pytest.mark.slow
+def test_a_held_crack_does_not_creep_in_a_million_steps():
+    """Residual below 1e-8, and slip that does not go on."""
+    run = cracked_block(0.58, 0.95, n=6)
+    run.advance(1000)
+    held = run.nodes()[0]
+    run.advance(999_000)
+    scale = abs(held).max()
+    drift = abs(run.nodes()[0] - held).max() / scale
+    print(f"residual {run.energy().residual:.1e}, drift {drift:.1e} of the displacement")
+    assert abs(run.energy().residual) < 1e-8
+    assert drift < 1e-9
+
+
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_the_slip_of_a_crack_does_not_depend_on_the_step(friction):
     """Largest kinetic energy and work of friction within 5 % from 0.1 to 0.95 of the step."""
@@ -348,23 +378,23 @@ def test_the_slip_of_a_crack_does_not_depend_on_the_step(friction):
         assert results[1, 1] > 1e-4
 
 
-def crushed_rubble(factor, friction=0.5, size=0.02):
+def crushed_rubble(factor, friction=0.5, speed=1.0, jitter=0.0, n=6, size=0.02):
     """A block of single triangles, each with its own nodes, between two rigid plates."""
     plate = rectangle(3, 1, 1.4 * size, 0.2 * size)
     mesh = join(
-        rock=cut_all_edges(rectangle(6, 6, size, size)),
+        rock=cut_all_edges(rectangle(n, n, size, size, jitter=jitter)),
         bottom=moved(plate, (-0.2 * size, -0.2 * size)),
         top=moved(plate, (-0.2 * size, size)),
     )
     low, high = (np.unique(mesh.triangles[mesh.body == body]) for body in (1, 2))
     loads = (hold("low x", low, 0), hold("low y", low, 1), hold("high x", high, 0))
-    loads += (hold("push", high, 1, -1.0, ramp=Ramp(0.0, 5e-6)),)
+    loads += (hold("push", high, 1, -speed, ramp=Ramp(0.0, 5e-6)),)
     run = Run(
         contact_problem(
             mesh, ROCK, friction=friction, velocity_loads=loads, time_step_factor=factor
         )
     )
-    assert run.critical_step[1] < 72, "the rock must set the step"
+    assert run.critical_step[1] < 2 * n * n, "the rock must set the step"
     return run
 
 
@@ -388,6 +418,38 @@ def test_above_the_element_step_the_rubble_blows_up():
     with pytest.raises(CoreError, match=r"contact:|not finite"):
         run.advance(int(2e-4 / run.dt))
     assert run.energy().elastic > 10 * run.energy().external
+
+
+def deepest_overlap(run):
+    """Deepest node inside an element of another part, over the shortest edge, by brute force."""
+    mesh = run.problem.mesh
+    x = mesh.nodes + run.nodes()[0]
+    deepest = 0.0
+    for triangle in mesh.triangles:
+        corner = x[triangle]
+        inside = ((x > corner.min(axis=0)) & (x < corner.max(axis=0))).all(axis=1)
+        inside[triangle] = False
+        along = np.roll(corner, -1, axis=0) - corner
+        along /= np.hypot(*along.T)[:, None]
+        arm = x[inside][:, None] - corner
+        left_of = along[:, 0] * arm[..., 1] - along[:, 1] * arm[..., 0]
+        deepest = max(deepest, left_of.min(axis=1).max(initial=0.0))
+    return deepest / boundary_of(mesh)[1]
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5, 1.2])
+def test_no_part_of_the_rubble_enters_another(friction):
+    """All nodes against all elements at the end; contact takes energy and never gives any."""
+    run = crushed_rubble(0.9, friction, speed=5.0, jitter=0.25, n=8)
+    while run.step * run.dt < 1e-4:
+        run.advance(100)
+    energy, statistics = run.energy(), run.contact_statistics()
+    work = energy.contact / energy.external
+    print(f"overlap {deepest_overlap(run):.1e} h, contact work {work:.1e}, {statistics}")
+    assert deepest_overlap(run) < 5e-4
+    assert -0.2 < work < 1e-3
+    assert energy.friction <= 1e-12 * energy.external
+    assert abs(energy.residual) < 1e-5
 
 
 def test_six_copies_of_a_node_part_without_an_impulse():
