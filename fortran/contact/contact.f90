@@ -60,6 +60,7 @@ module lithofrac_contact_contact
       type(candidates_type) :: candidates
       integer, allocatable :: kind(:)              !! (n_corners)
       integer, allocatable :: face(:, :)           !! (2, n_corners)
+      logical, allocatable :: neighbours(:)        !! (n_corners) nothing stands between
       real(wp), allocatable :: corner_friction(:)  !! (n_corners)
       real(wp), allocatable :: edge_friction(:)    !! (n_edges)
       real(wp), allocatable :: tangent(:, :)       !! (2, n) edges when corners were classified
@@ -182,9 +183,10 @@ contains
       n_edges = size(contact%candidates%edge, 2)
       if (allocated(contact%kind)) then
          deallocate (contact%kind, contact%face, contact%pairs)
-         deallocate (contact%corner_friction, contact%edge_friction)
+         deallocate (contact%neighbours, contact%corner_friction, contact%edge_friction)
       end if
       allocate (contact%kind(n_corners), contact%face(2, n_corners))
+      allocate (contact%neighbours(n_corners))
       allocate (contact%corner_friction(n_corners), contact%edge_friction(n_edges))
       allocate (contact%pairs(n_corners + n_edges + 1))
       contact%corner_impulse = spread([0.0_wp, 0.0_wp], 2, n_corners)
@@ -230,7 +232,7 @@ contains
       associate (first => contact%candidates%corner(1, i), t => contact%tangent, &
             second => contact%candidates%corner(2, i), prev => contact%surfaces%prev)
          call classify(t(:, prev(first)), t(:, first), t(:, prev(second)), t(:, second), &
-            contact%kind(i), contact%face(:, i))
+            contact%kind(i), contact%face(:, i), contact%neighbours(i))
       end associate
    end subroutine classify_corner
 
@@ -260,64 +262,121 @@ contains
    end subroutine turn_corners
 
    !> Pairs that may close in this step: corners first, then nodes over edges.
+   !>
+   !> Wedges that stand side by side make a corner. Where something may stand between them, nodes
+   !> over edges keep them apart, and a corner only fills the hole exactly above a node. Where
+   !> both have somebody on either side, those keep them apart.
    subroutine collect_pairs(contact, scales, code, node)
       type(contact_type), intent(inout) :: contact
       type(scales_type), intent(in) :: scales
       integer, intent(out) :: code
       integer, intent(out) :: node(2)
 
-      logical :: is_corner(0:size(contact%kind)), collides
-      real(wp) :: arm(2), d(2), speed
-      integer :: i
+      logical :: is_done(0:size(contact%kind))
+      integer :: i, beside(contact%surfaces%n)
 
       code = solved
-      node = 1
       contact%n_pairs = 0
-      is_corner = .false.
-      associate (list => contact%candidates, v => contact%v, before => contact%before)
-         do i = 1, size(contact%kind) + size(list%edge, 2)
-            associate (pair => contact%pairs(contact%n_pairs + 1), &
-                  k => i - size(contact%kind))
-               if (k <= 0) then
-                  if (contact%kind(i) == no_corner) cycle
-                  associate (a => list%corner(1, i), b => list%corner(2, i))
-                     arm = offset(contact%surfaces, a, b)
-                     d = before(:, a) - before(:, b)
-                     if (arm(1)*arm(1) + arm(2)*arm(2) > max((corner_reach*scales%h)**2, &
-                        (steps_ahead*scales%dt)**2*(d(1)*d(1) + d(2)*d(2)))) cycle
-                     is_corner(i) = .true.
-                     call corner_pair(contact%surfaces, a, b, contact%kind(i), &
-                        contact%face(:, i), arm, arm + scales%dt*(v(:, a) - v(:, b)), pair)
-                  end associate
-                  if (pair%n_faces == 0) cycle
-                  pair%candidate = i
-                  pair%friction = contact%corner_friction(i)
-                  call complete_pair(pair, scales, contact%inverse_mass, v, &
-                     contact%corner_impulse(:, i), speed, collides)
-               else
-                  if (is_corner(list%corner_at(1, k)) .or. is_corner(list%corner_at(2, k))) cycle
-                  call edge_pair(contact%surfaces, list%edge(1, k), list%edge(2, k), pair)
-                  if (pair%n_faces == 0) cycle
-                  pair%candidate = -k
-                  pair%friction = contact%edge_friction(k)
-                  call complete_pair(pair, scales, contact%inverse_mass, v, &
-                     contact%edge_impulse(:, k), speed, collides)
-               end if
-               if (collides) then
-                  code = prescribed_collision
-                  node = pair%node(:2)
-                  exit
-               end if
-               if (pair%n_faces == 0) cycle
-               contact%fastest = max(contact%fastest, speed)
-               contact%deepest = max(contact%deepest, -minval(pair%gap(:pair%n_faces)))
-            end associate
-            contact%n_pairs = contact%n_pairs + 1
-         end do
-      end associate
+      is_done = .false.
+      beside = 0
+      do i = 1, size(contact%kind)
+         if (contact%kind(i) == no_corner .or. .not. contact%neighbours(i)) cycle
+         call add_corner(contact, scales, i, is_done(i), code)
+         if (code /= solved) exit
+         if (.not. is_done(i)) cycle
+         associate (corner => contact%candidates%corner(:, i))
+            beside(corner) = beside(corner) + 1
+         end associate
+      end do
+      if (code == solved) call add_edges(contact, scales, is_done, code)
+      do i = 1, size(contact%kind)
+         if (code /= solved) exit
+         if (contact%kind(i) == no_corner .or. contact%neighbours(i) .or. is_done(i)) cycle
+         if (all(beside(contact%candidates%corner(:, i)) > 1)) cycle
+         call add_corner(contact, scales, i, is_done(i), code)
+      end do
+      node = 1
+      if (code /= solved) node = contact%pairs(contact%n_pairs + 1)%node(:2)
       contact%corner_impulse = 0.0_wp
       contact%edge_impulse = 0.0_wp
    end subroutine collect_pairs
+
+   !> Nodes over edges, except where the node makes a corner with an end of the edge.
+   subroutine add_edges(contact, scales, is_done, code)
+      type(contact_type), intent(inout) :: contact
+      type(scales_type), intent(in) :: scales
+      logical, intent(inout) :: is_done(0:)  !! corners that have a pair, or pairs at their edges
+      integer, intent(inout) :: code
+
+      integer :: i, n_before
+
+      n_before = contact%n_pairs
+      do i = 1, size(contact%candidates%edge, 2)
+         associate (corner => contact%candidates%corner_at(:, i))
+            if (is_done(corner(1)) .or. is_done(corner(2))) cycle
+            call edge_pair(contact%surfaces, contact%candidates%edge(1, i), &
+               contact%candidates%edge(2, i), contact%pairs(contact%n_pairs + 1))
+            call count_in(contact, scales, -i, code)
+            if (code /= solved) return
+         end associate
+      end do
+      do i = n_before + 1, contact%n_pairs
+         is_done(contact%candidates%corner_at(:, -contact%pairs(i)%candidate)) = .true.
+      end do
+   end subroutine add_edges
+
+   !> The pair of corner `i`, if its nodes are at one place.
+   subroutine add_corner(contact, scales, i, is_corner, code)
+      type(contact_type), intent(inout) :: contact
+      type(scales_type), intent(in) :: scales
+      integer, intent(in) :: i
+      logical, intent(out) :: is_corner
+      integer, intent(inout) :: code
+
+      real(wp) :: arm(2), d(2)
+
+      associate (a => contact%candidates%corner(1, i), b => contact%candidates%corner(2, i), &
+            pair => contact%pairs(contact%n_pairs + 1))
+         arm = offset(contact%surfaces, a, b)
+         d = contact%before(:, a) - contact%before(:, b)
+         is_corner = arm(1)*arm(1) + arm(2)*arm(2) <= max((corner_reach*scales%h)**2, &
+            (steps_ahead*scales%dt)**2*(d(1)*d(1) + d(2)*d(2)))
+         if (.not. is_corner) return
+         d = contact%v(:, a) - contact%v(:, b)
+         call corner_pair(contact%surfaces, a, b, contact%kind(i), contact%face(:, i), arm, &
+            arm + scales%dt*d, pair)
+      end associate
+      call count_in(contact, scales, i, code)
+   end subroutine add_corner
+
+   !> Complete the pair that stands behind those of the step, and count it in.
+   subroutine count_in(contact, scales, candidate, code)
+      type(contact_type), intent(inout) :: contact
+      type(scales_type), intent(in) :: scales
+      integer, intent(in) :: candidate       !! corner when positive, node and edge when negative
+      integer, intent(inout) :: code
+
+      real(wp) :: speed, impulse(2)
+      logical :: collides
+
+      associate (pair => contact%pairs(contact%n_pairs + 1))
+         if (pair%n_faces == 0) return
+         pair%candidate = candidate
+         if (candidate > 0) then
+            pair%friction = contact%corner_friction(candidate)
+            impulse = contact%corner_impulse(:, candidate)
+         else
+            pair%friction = contact%edge_friction(-candidate)
+            impulse = contact%edge_impulse(:, -candidate)
+         end if
+         call complete_pair(pair, scales, contact%inverse_mass, contact%v, impulse, speed, collides)
+         if (collides) code = prescribed_collision
+         if (collides .or. pair%n_faces == 0) return
+         contact%fastest = max(contact%fastest, speed)
+         contact%deepest = max(contact%deepest, -minval(pair%gap(:pair%n_faces)))
+      end associate
+      contact%n_pairs = contact%n_pairs + 1
+   end subroutine count_in
 
    !> Choice: where faces of different friction meet in a corner, the largest holds.
    pure function friction_of(contact, first, second) result(friction)

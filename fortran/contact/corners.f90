@@ -21,30 +21,33 @@ module lithofrac_contact_corners
 
    real(wp), parameter :: wrap = 0.05_wp        !! a gap above 2 pi - wrap is an overlap [rad]
    real(wp), parameter :: overlap = 1.0_wp      !! wedges that overlap more meet elsewhere [rad]
-   real(wp), parameter :: neighbour = 0.5_wp    !! only wedges next to each other meet [rad]
+   real(wp), parameter :: neighbour = 0.5_wp    !! nothing fits between wedges closer than it [rad]
    real(wp), parameter :: flat = 0.03_wp        !! below it two faces are one [rad]
 
 contains
 
    !> Kind of a corner and its limiting faces, from the unit tangents of the four edges.
-   pure subroutine classify(into_first, out_of_first, into_second, out_of_second, kind, face)
+   pure subroutine classify(into_first, out_of_first, into_second, out_of_second, kind, face, &
+         neighbours)
       real(wp), intent(in) :: into_first(2)     !! edge that ends at the first node
       real(wp), intent(in) :: out_of_first(2)   !! edge that starts there
       real(wp), intent(in) :: into_second(2)
       real(wp), intent(in) :: out_of_second(2)
       integer, intent(out) :: kind
       integer, intent(out) :: face(2)           !! edges of the lower and the upper limit
+      logical, intent(out) :: neighbours        !! no third wedge stands between the two
 
       real(wp) :: first, second, gap(2), lower, upper
 
       kind = no_corner
       face = 0
+      neighbours = .false.
       first = angle(out_of_first, -into_first)
       second = angle(out_of_second, -into_second)
       gap = [angle(-into_first, out_of_second), angle(-into_second, out_of_first)]
       where (gap > 2.0_wp*pi - wrap) gap = gap - 2.0_wp*pi
       if (sum(gap) + first + second > 2.0_wp*pi + overlap) return
-      if (minval(gap) > neighbour) return
+      neighbours = minval(gap) <= neighbour
       lower = max(0.0_wp, gap(1) + second - pi)
       upper = min(gap(1), pi - first)
       face(1) = merge(before_second, before_first, gap(1) + second - pi > 0.0_wp)
@@ -53,6 +56,7 @@ contains
          kind = flat_face
       else if (lower > upper) then
          kind = both_faces
+         neighbours = .true.
       else
          kind = any_face
       end if

@@ -249,7 +249,7 @@ contains
       real(wp), intent(in) :: gap
       type(pair_type), intent(inout) :: pair
 
-      real(wp) :: share
+      real(wp) :: share, away
       integer :: edge
 
       pair%n_faces = 1
@@ -260,7 +260,11 @@ contains
       pair%weight(:2) = [1.0_wp, -1.0_wp]
       if (face == 0) return
       edge = edge_of(surfaces, i, k, face)
-      share = dot_product(arm, surfaces%tangent(:, edge))/surfaces%length(edge)
+      associate (t => surfaces%tangent(:, edge))
+         ! where the line along the normal through the other node cuts the edge
+         away = across(arm, t)/across(normal, t)
+         share = dot_product(arm - away*normal, t)/surfaces%length(edge)
+      end associate
       select case (face)
       case (before_first)
          pair%node(3) = edge

@@ -37,16 +37,21 @@ contains
    end subroutine pair_impulse
 
    !> Kind and limiting faces of a corner, numbered as in `lithofrac_contact_corners`.
-   subroutine corner_kind(tangents, kind, face, code, message)
+   subroutine corner_kind(tangents, kind, face, neighbours, code, message)
       real(c_double), intent(in) :: tangents(2, 4)   !! into and out of the first, the second node
       integer(c_int), intent(out) :: kind
       integer(c_int), intent(out) :: face(2)
+      integer(c_int), intent(out) :: neighbours      !! 1: nothing fits between them
       integer(c_int), intent(out) :: code
       character(len=256), intent(out) :: message
 
+      logical :: side_by_side
+
       code = ok
       message = ""
-      call classify(tangents(:, 1), tangents(:, 2), tangents(:, 3), tangents(:, 4), kind, face)
+      call classify(tangents(:, 1), tangents(:, 2), tangents(:, 3), tangents(:, 4), kind, face, &
+         side_by_side)
+      neighbours = merge(1, 0, side_by_side)
    end subroutine corner_kind
 
    !> The boundary node after each node, and the shortest edge; 0 off the boundary.

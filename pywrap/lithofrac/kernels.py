@@ -40,7 +40,8 @@ pair_impulse = checked(_core.kernels_contact.pair_impulse)
 """Impulse (2,) of a contact pair: (velocity, normals (2, n), biases (n,), friction, compliance)."""
 
 corner_kind = checked(_core.kernels_contact.corner_kind)
-"""(kind, faces) of two wedges at one place, from unit tangents (2, 4): into and out of each."""
+"""(kind, faces, neighbours) of two wedges at one place, from unit tangents (2, 4): into and out
+of each."""
 
 _boundary_of = checked(_core.kernels_contact.boundary_of)
 _candidates_of = checked(_core.kernels_contact.candidates_of)

@@ -108,6 +108,22 @@ def test_frictionless_impacts_keep_both_momenta(factor):
     assert abs(angular_now - angular) / arm_size < 1e-12
 
 
+@pytest.mark.parametrize("shift", [-0.015, -0.004, 0.004, 0.015])
+def test_nodes_that_nearly_face_each_other_turn_nothing(shift):
+    """The reaction of a corner pair acts where the other node stands, not at its partner."""
+    block = rectangle(4, 4)
+    mesh = join(low=block, high=moved(block, (0.25 * (1 + shift), 1.01)))
+    run = Run(contact_problem(mesh))
+    velocity = np.zeros_like(mesh.nodes)
+    velocity[len(block.nodes) :, 1] = -5e-3
+    run.set_motion(0 * velocity, velocity)
+    run.advance(0)
+    _, angular, _, arm_size = momentum(run)
+    run.advance(int(4.0 / run.dt))
+    assert run.contact_statistics().pairs_max >= 3
+    assert abs(momentum(run)[1] - angular) / arm_size < 1e-12
+
+
 def test_friction_changes_angular_momentum_by_less_than_1e_6_and_less_with_the_step():
     """Friction acts at the start of a step, over the gap that the step closes."""
     drift = []
@@ -366,6 +382,9 @@ def test_the_slip_of_a_crack_does_not_depend_on_the_step(friction):
             energy = run.energy()
             kinetic = max(kinetic, energy.kinetic)
             assert abs(energy.residual) < 1e-8
+        assert run.contact_statistics().sweeps_mean < 2.5
+        copies = len(run.problem.mesh.nodes) - 17 * 17
+        assert run.contact_statistics().pairs_max <= copies, "one pair a node is enough"
         results.append([kinetic, -energy.friction, energy.elastic])
         assert run.contact_statistics().max_penetration_over_h < 1e-6
         assert energy.contact <= 1e-12 * initial
@@ -401,12 +420,12 @@ def crushed_rubble(factor, friction=0.5, speed=1.0, jitter=0.0, n=6, size=0.02):
 @pytest.mark.parametrize("factor", [0.90, 0.99])
 def test_contact_leaves_the_step_of_the_free_elements(factor):
     """With every edge cut the mesh has exactly the limit of its elements."""
-    run = crushed_rubble(factor)
-    while run.step * run.dt < 2e-4:
-        run.advance(100)
+    run = crushed_rubble(factor, speed=5.0)
+    while run.step * run.dt < 1e-4:
+        run.advance(50)
         energy = run.energy()
         assert energy.kinetic + energy.elastic <= 1.001 * energy.external
-        assert abs(energy.residual) < 1e-6
+        assert abs(energy.residual) < 1e-5
     statistics = run.contact_statistics()
     print(statistics)
     assert statistics.pairs_max > 500
@@ -414,10 +433,10 @@ def test_contact_leaves_the_step_of_the_free_elements(factor):
 
 
 def test_above_the_element_step_the_rubble_blows_up():
-    run = crushed_rubble(1.05)
+    run = crushed_rubble(1.05, speed=5.0)
     with pytest.raises(CoreError, match=r"contact:|not finite"):
-        run.advance(int(2e-4 / run.dt))
-    assert run.energy().elastic > 10 * run.energy().external
+        run.advance(int(1e-4 / run.dt))
+    assert run.energy().elastic > 2 * run.energy().external
 
 
 def deepest_overlap(run):
@@ -472,6 +491,66 @@ def test_six_copies_of_a_node_part_without_an_impulse():
     energy = run.energy()
     assert energy.kinetic + energy.elastic <= energy.initial
     assert run.contact_statistics().max_penetration_over_h < 1e-5
+
+
+@pytest.mark.parametrize("width", [0.5, 1.5, 2.5, 2.9])
+@pytest.mark.parametrize("shift", [0.0, 1e-9, 1e-3, 0.03])
+@pytest.mark.parametrize("dip", [0.0, 0.3])
+def test_a_tip_that_falls_on_a_node_is_caught(width, shift, dip):
+    """A tip of any width on the middle node of a flat face or of a notch, exactly or nearly."""
+    half = np.tan(width / 2)
+    base = [[-1.0, dip], [0, 0], [1, dip], [0, -1]]
+    gap = 0.05 + 0.2 * dip
+    tip = [[shift, gap], [shift + half, 1 + gap], [shift - half, 1 + gap]]
+    mesh = replace(
+        rectangle(1, 1),
+        nodes=np.array(base + tip),
+        triangles=np.array([[0, 3, 1], [3, 2, 1], [4, 5, 6]], np.int32),
+        body=np.array([0, 0, 1], np.int32),
+        body_names=("base", "tip"),
+    )
+    if dip > 0.0 and 2 * np.arctan2(1.0, dip) < width:
+        pytest.skip("the tip is wider than the notch")
+    loads = (hold("x", range(4), 0), hold("y", range(4), 1))
+    run = Run(contact_problem(mesh, friction=0.3, velocity_loads=loads))
+    velocity = np.zeros_like(mesh.nodes)
+    velocity[4:, 1] = -5e-3
+    run.set_motion(0 * velocity, velocity)
+    run.advance(0)
+    x, lowest = mesh.nodes, 1.0
+    while run.step * run.dt < 30.0:
+        run.advance(1)
+        at = (x + run.nodes()[0])[4]
+        lowest = min(lowest, at[1] - dip * abs(at[0]))
+        assert deepest_overlap(run) < 1e-5
+    assert lowest > -1e-5
+    assert lowest < 0.01
+    assert run.energy().contact < 0.0
+
+
+def test_a_flat_face_that_bends_becomes_a_corner_between_two_lists():
+    """The middle of a face sinks under a tip, which then must climb the slope beside it."""
+    nodes = np.array([[-1.0, 0], [0, 0], [1, 0], [0, -1], [0, 0], [1, 0.1], [0, 1], [-1, 0.1]])
+    triangles = np.array([[0, 3, 1], [3, 2, 1], [4, 5, 6], [4, 6, 7]], np.int32)
+    mesh = replace(
+        rectangle(1, 1),
+        nodes=nodes,
+        triangles=triangles,
+        body=np.array([0, 0, 1, 1], np.int32),
+        body_names=("base", "tip"),
+    )
+    sinking, duration = 1e-3, 55.0
+    drag = Ramp(0.6 * duration, 0.1 * duration)
+    loads = (hold("base x", range(4), 0), hold("base y", [0, 2, 3], 1))
+    loads += (hold("sink", [1, 6], 1, -sinking), hold("drag", [5, 6, 7], 0, 8e-4, ramp=drag))
+    damping = Damping(alpha=0.3, relative_to="ground")
+    run = Run(contact_problem(mesh, velocity_loads=loads, damping=damping))
+    run.advance(int(duration / run.dt))
+    assert run.contact_statistics().lists == 1
+    u = run.nodes()[0]
+    along, rise, slope = u[4, 0], u[4, 1] - u[1, 1], -u[1, 1]
+    assert 0.01 < along < 0.02
+    assert rise > 0.95 * slope * along
 
 
 def test_a_crack_tip_inside_a_body_holds():

@@ -14,7 +14,7 @@ def wedge(start, width):
 
 
 def kind_of(first, second):
-    kind, faces = corner_kind(np.array([*first, *second]).T)
+    kind, faces, _ = corner_kind(np.array([*first, *second]).T)
     return CORNER_KINDS[kind], list(faces)
 
 
@@ -38,15 +38,23 @@ def test_two_convex_tips_may_part_along_any_line_between_them(turn):
     assert faces == [1, 4]
 
 
-def test_tips_that_are_not_neighbours_do_not_meet():
-    """Six pieces round a point: only those next to each other touch."""
+def test_six_pieces_round_a_point_have_two_neighbours_each():
     width = np.pi / 3
     pieces = [wedge(i * width, width) for i in range(6)]
     for i in range(6):
         for j in range(6):
             if i != j:
                 near = (i - j) % 6 in (1, 5)
-                assert (kind_of(pieces[i], pieces[j])[0] != "none") == near
+                *_, neighbours = corner_kind(np.array([*pieces[i], *pieces[j]]).T)
+                assert neighbours == near
+
+
+def test_a_tip_in_a_notch_has_nothing_beside_it():
+    """However narrow the tip: the notch itself keeps others out."""
+    *_, neighbours = corner_kind(np.array([*wedge(1.3, 0.5), *wedge(np.pi, np.pi + 0.6)]).T)
+    assert neighbours
+    *_, neighbours = corner_kind(np.array([*wedge(1.3, 0.5), *wedge(np.pi, np.pi)]).T)
+    assert not neighbours
 
 
 def test_wedges_that_overlap_meet_elsewhere():
