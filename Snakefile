@@ -75,14 +75,16 @@ rule bench:
         CORE,
         rock="configs/materials/{rock}.yaml",
     output:
-        f"{OUT}/bench/{{rock}}/{{test}}_p{{level}}.parquet",
+        BENCH,
     log:
-        f"{OUT}/log/bench_{{rock}}_{{test}}_{{level}}.txt",
+        f"{OUT}/log/bench_{{rock}}_{{test}}.txt",
+    params:
+        levels=CONFINEMENTS,
     message:
-        "Drive one material point of {wildcards.rock}: {wildcards.test}, {wildcards.level} MPa"
+        "Drive one material point of {wildcards.rock}: {wildcards.test}"
     shell:
-        "lithofrac point {input.rock} --test {wildcards.test} --confinement-MPa {wildcards.level}"
-        " --end-strain 0.025 --out {output} > {log} 2>&1"
+        "lithofrac point {input.rock} --test {wildcards.test} --confinement-MPa {params.levels}"
+        " --end-strain 0.025 --out {OUT}/bench/{wildcards.rock} > {log} 2>&1"
 
 
 rule plot_bench:

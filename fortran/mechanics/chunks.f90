@@ -16,12 +16,13 @@ module lithofrac_mechanics_chunks
       integer :: n_chunks = 0
       logical :: axisymmetric = .false.
       integer, allocatable :: node(:, :, :)         !! (width, 3, n_chunks)
-      real(wp), allocatable :: gradient(:, :, :)    !! (width, 4, n_chunks) dN2/dX, dN2/dY, dN3/dX, dN3/dY [1/m]
-      real(wp), allocatable :: volume(:, :)         !! (width, n_chunks) [m3] per metre or per radian
+      !> (width, 4, n_chunks) dN2/dX, dN2/dY, dN3/dX, dN3/dY [1/m]
+      real(wp), allocatable :: gradient(:, :, :)
+      real(wp), allocatable :: volume(:, :)         !! (width, n_chunks) [m3] per metre or radian
       real(wp), allocatable :: hoop(:, :)           !! (width, n_chunks) 1/(3 mean radius) [1/m]
       integer, allocatable :: body(:)               !! (n_chunks)
       integer, allocatable :: filled(:)             !! (n_chunks) lanes that hold an element
-      integer, allocatable :: element(:, :)         !! (width, n_chunks) element number, 0 in padding
+      integer, allocatable :: element(:, :)         !! (width, n_chunks) 0 in padding
       integer, allocatable :: lane_of(:)            !! (n_elements)
       integer, allocatable :: chunk_of(:)           !! (n_elements)
    end type chunks_type

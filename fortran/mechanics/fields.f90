@@ -20,11 +20,12 @@ module lithofrac_mechanics_fields
       real(wp), allocatable :: external(:, :)      !! (2, n_nodes) pressure force [N]
       real(wp), allocatable :: contact(:, :)       !! (2, n_nodes) contact force [N]
       real(wp), allocatable :: mass(:)             !! (n_nodes) [kg]
-      real(wp), allocatable :: inverse_mass(:, :)  !! (2, n_nodes) 0 where velocity is prescribed [1/kg]
-      real(wp), allocatable :: free_mass(:, :)     !! (2, n_nodes) 0 where velocity is prescribed [kg]
+      real(wp), allocatable :: inverse_mass(:, :)  !! (2, n_nodes) 0 where prescribed [1/kg]
+      real(wp), allocatable :: free_mass(:, :)     !! (2, n_nodes) 0 where prescribed [kg]
    end type fields_type
 
    !> State of the material in the elements; lane and chunk as in `chunks_type`.
+   !> `dissipated` is by the Mohr-Coulomb planes (1) and by the tension planes (2).
    type :: inelastic_type
       logical, allocatable :: touched(:)           !! (n_chunks) some element has yielded
       real(wp), allocatable :: strain(:, :, :)     !! (width, 4, n_chunks) inelastic strain
@@ -35,7 +36,7 @@ module lithofrac_mechanics_fields
       real(wp), allocatable :: crack(:, :, :)      !! (width, 2, n_chunks) sums of eq. 13
       real(wp), allocatable :: sin_phi(:, :)       !! (width, n_chunks) mobilised friction
       real(wp), allocatable :: c_cos_phi(:, :)     !! (width, n_chunks) mobilised cohesion [Pa]
-      real(wp), allocatable :: dissipated(:, :, :) !! (width, 2, n_chunks) compressive, fracture [J/m3]
+      real(wp), allocatable :: dissipated(:, :, :) !! (width, 2, n_chunks) see above [J/m3]
       real(wp), allocatable :: softening(:, :)     !! (width, n_chunks) H of eq. 16 [Pa], <= 0
    end type inelastic_type
 

@@ -87,7 +87,8 @@ contains
       end if
       call strains(width, chunks%gradient(:, :, chunk), du, strain, rotation)
       if (state%touched(chunk)) then
-         call elastic_stress(width, rock%lame, rock%shear, strain, state%strain(:, :, chunk), stress)
+         call elastic_stress(width, rock%lame, rock%shear, strain, state%strain(:, :, chunk), &
+            stress)
       else
          call elastic_stress(width, rock%lame, rock%shear, strain, no_strain, stress)
       end if
@@ -116,8 +117,9 @@ contains
          state%sin_phi(:, chunk), state%c_cos_phi(:, chunk), excess, axis)
       if (maxval(excess) > rock%yield_tolerance) then
          do lane = 1, chunks%filled(chunk)
-            if (excess(lane) > rock%yield_tolerance) &
+            if (excess(lane) > rock%yield_tolerance) then
                call return_lane(chunks, chunk, lane, rock, fields, dt, state, stress, failure)
+            end if
          end do
       end if
       where (excess <= rock%yield_tolerance)
@@ -164,7 +166,8 @@ contains
       real(wp) :: mean, half, radius, high, low, turn, first, second, by_radius, least
       logical :: keeps
 
-      !$omp simd private(mean, half, radius, high, low, turn, first, second, by_radius, least, keeps)
+      !$omp simd private(mean, half, radius, high, low, turn, first, second) &
+      !$omp& private(by_radius, least, keeps)
       do i = 1, width
          mean = 0.5_wp*(stress(i, 1) + stress(i, 2))
          half = 0.5_wp*(stress(i, 1) - stress(i, 2))
@@ -212,8 +215,9 @@ contains
       call update_stress(rock, state%softening(lane, chunk), old, trial, point, sigma, dep, &
          dep_compressive, active, code)
       if (code /= ok) then
-         if (failure%code == ok) &
+         if (failure%code == ok) then
             failure = failure_type(code, chunks%element(lane, chunk), trial)
+         end if
          return
       end if
       stress(lane, :) = sigma
@@ -221,9 +225,10 @@ contains
       work(1) = 0.5_wp*dot_product(old + sigma, dep_compressive)
       work(2) = 0.5_wp*dot_product(old + sigma, dep - dep_compressive)
       state%dissipated(lane, :, chunk) = state%dissipated(lane, :, chunk) + work
-      if (point%ep_eff > state%plastic_strain(lane, chunk)) &
+      if (point%ep_eff > state%plastic_strain(lane, chunk)) then
          call strength_coefficients(rock, point%ep_eff, state%sin_phi(lane, chunk), &
-         state%c_cos_phi(lane, chunk))
+            state%c_cos_phi(lane, chunk))
+      end if
       state%plastic_strain(lane, chunk) = point%ep_eff
       state%ft(lane, :, chunk) = point%ft
       state%opening(lane, :, chunk) = point%opening

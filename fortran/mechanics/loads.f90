@@ -9,8 +9,8 @@ module lithofrac_mechanics_loads
    private
 
    public :: pressure_type, ramp_type, ramp_value, velocity_type
-   public :: apply_pressure, apply_velocity, pressure_record, velocity_record, work_after, &
-      work_before
+   public :: apply_pressure, apply_velocity, prescribed_kinetic, pressure_record, &
+      velocity_record, work_after, work_before
 
    !> Smooth rise from 0 to 1 over `duration` after `start`.
    type :: ramp_type
@@ -132,6 +132,24 @@ contains
             - fields%external(k, node) - fields%contact(k, node)
       end associate
    end function reaction
+
+   !> What the kinetic energy of the nodes lacks where a velocity was overwritten [J].
+   !>
+   !> The nodes sum 1/2 m v(n-1/2) v(n+1/2); at a prescribed component they see v(n+1/2) twice.
+   pure function prescribed_kinetic(velocities, fields) result(energy)
+      type(velocity_type), intent(in) :: velocities(:)
+      type(fields_type), intent(in) :: fields
+      real(wp) :: energy
+
+      integer :: load
+
+      energy = 0.0_wp
+      do load = 1, size(velocities)
+         associate (set => velocities(load))
+            energy = energy + 0.5_wp*set%now*sum(fields%mass(set%node)*(set%before - set%now))
+         end associate
+      end do
+   end function prescribed_kinetic
 
    !> Half-step work of all loads before time n [J].
    pure function work_before(velocities, pressures, dt, fields) result(work)

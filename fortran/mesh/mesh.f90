@@ -80,7 +80,7 @@ contains
             if (triangle_area(mesh%nodes(:, corner(1)), mesh%nodes(:, corner(2)), &
                   mesh%nodes(:, corner(3))) > 0.0_wp) cycle
          end associate
-         write (words, '(a, i0, a)') "mesh: element ", element, " has no positive area"
+         write (words, "(a, i0, a)") "mesh: element ", element, " has no positive area"
          call set_failure(status, bad_element, trim(words))
          return
       end do
@@ -98,7 +98,7 @@ contains
          mesh%body_of_node(mesh%triangles(:, element)) = mesh%body(element)
       end do
       if (all(mesh%body_of_node > 0)) return
-      write (words, '(a, i0, a)') "mesh: node ", findloc(mesh%body_of_node, 0, dim=1), &
+      write (words, "(a, i0, a)") "mesh: node ", findloc(mesh%body_of_node, 0, dim=1), &
          " belongs to no element"
       call set_failure(status, bad_input, trim(words))
    end subroutine assign_bodies

@@ -172,6 +172,8 @@ contains
          if (self%place + n <= size(self%buffer)) then
             values = self%buffer(self%place + 1:self%place + n)
          end if
+      case default
+         continue  ! counting only
       end select
       self%place = self%place + n
    end subroutine visit

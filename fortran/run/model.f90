@@ -78,7 +78,8 @@ contains
       call new_chunks(model%chunks, model%mesh, axisymmetric)
       call new_blocks(model%blocks, model%chunks, model%mesh)
       call new_fields(model%fields, model%mesh%n_nodes)
-      call new_inelastic(model%state, model%chunks, model%rocks, band_widths(model%mesh, band_factor))
+      call new_inelastic(model%state, model%chunks, model%rocks, &
+         band_widths(model%mesh, band_factor))
       allocate (model%velocities(0), model%pressures(0))
       allocate (model%affine(model%mesh%n_bodies))
       allocate (model%alpha(model%mesh%n_bodies), source=max(0.0_wp, settings%damping_alpha))

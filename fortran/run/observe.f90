@@ -1,16 +1,18 @@
-!> Look at a run without changing it: ledger, boundary records, element state.
+!> Look at a run: ledger, boundary records, element state. Only the largest energy that was
+!> seen is noted, as a scale of the residual; no field changes.
 module lithofrac_run_observe
    use lithofrac_base_kinds, only: wp
    use lithofrac_mechanics_chunks, only: width
    use lithofrac_mechanics_internal_force, only: chunk_stress
-   use lithofrac_mechanics_loads, only: pressure_record, velocity_record, work_before
+   use lithofrac_mechanics_loads, only: prescribed_kinetic, pressure_record, velocity_record, &
+      work_before
    use lithofrac_run_energy, only: ledger_type
    use lithofrac_run_model, only: model_type
    implicit none
    private
 
-   public :: element_state, energy_now, internal_energy, kinetic_energy, load_records, &
-      n_element_state
+   public :: element_state, energy_now, internal_energy, kinetic_energy, load_records
+   public :: n_element_state
 
    integer, parameter :: n_element_state = 17  !! rows of `element_state`
 
@@ -41,20 +43,12 @@ contains
       ledger%scale = model%ledger%scale
    end subroutine energy_now
 
-   !> 1/2 v(n-1/2) M v(n+1/2) [J]; the node update knows prescribed velocities only as new.
-   pure function kinetic_energy(model) result(energy)
+   !> 1/2 v(n-1/2) M v(n+1/2) [J].
+   function kinetic_energy(model) result(energy)
       type(model_type), intent(in) :: model
       real(wp) :: energy
 
-      integer :: i
-
-      energy = sum(model%sums(1, :))
-      do i = 1, size(model%velocities)
-         associate (load => model%velocities(i))
-            energy = energy + 0.5_wp*load%now &
-               *sum(model%fields%mass(load%node)*(load%before - load%now))
-         end associate
-      end do
+      energy = sum(model%sums(1, :)) + prescribed_kinetic(model%velocities, model%fields)
    end function kinetic_energy
 
    !> Elastic energy and what the Mohr-Coulomb and the tension planes have dissipated [J].

@@ -4,12 +4,13 @@
 !> velocity of the half step after it. The next call starts by moving the nodes.
 module lithofrac_run_step
    use lithofrac_base_kinds, only: wp
-   use lithofrac_base_status, only: bad_input, no_return_map, not_finite, ok, set_failure, &
-      status_type
+   use lithofrac_base_status, only: bad_element, bad_input, no_return_map, not_finite, ok, &
+      set_failure, status_type
    use lithofrac_contact_overlap, only: refuse_overlap
    use lithofrac_mechanics_blocks, only: assemble
    use lithofrac_mechanics_internal_force, only: chunk_force, failure_type
    use lithofrac_mechanics_loads, only: apply_pressure, apply_velocity, work_after, work_before
+   use lithofrac_mesh_mesh, only: triangle_area
    use lithofrac_run_contact_step, only: bring_masses, book_contact, close_contacts, &
       note_velocities
    use lithofrac_run_damping, only: fit_affine, rayleigh_frequency
@@ -24,6 +25,7 @@ module lithofrac_run_step
    public :: advance, start
 
    integer, parameter :: quotient_interval = 100      !! steps between Rayleigh quotients
+   integer, parameter :: quotient_length = 10         !! steps that a quotient looks at
    real(wp), parameter :: largest_alpha_dt = 0.05_wp  !! keeps the lagged drag stable
 
 contains
@@ -128,6 +130,7 @@ contains
       call report_failure(model, failures, status)
       if (status%code == ok) status = contact_status
       if (status%code == ok) call check_finite(model, status)
+      if (status%code == ok) call check_areas(model, status)
    end subroutine advance
 
    !> Element forces of one block of chunks.
@@ -208,26 +211,24 @@ contains
       end do
    end subroutine set_damping
 
-   !> Rayleigh quotient of one increment in every hundred: the lowest frequency in motion.
+   !> Rayleigh quotient of one increment in every interval: the frequency that is in motion.
    subroutine update_alpha(model)
       type(model_type), intent(inout) :: model
 
       integer :: body
 
-      associate (fields => model%fields)
-         select case (mod(model%step, quotient_interval))
-         case (0)
-            model%reference_u = fields%u
-            model%reference_f = fields%internal
-            if (model%step == 0) model%alpha = alpha_of(model, model%lowest_frequency)
-         case (10)
-            do body = 1, model%mesh%n_bodies
-               model%alpha(body) = alpha_of(model, rayleigh_frequency(body, &
-                  model%mesh%body_of_node, fields%free_mass, fields%u - model%reference_u, &
-                  fields%internal - model%reference_f, model%lowest_frequency(body)))
-            end do
-         end select
-      end associate
+      if (mod(model%step, quotient_interval) == 0) then
+         model%reference_u = model%fields%u
+         model%reference_f = model%fields%internal
+         if (model%step == 0) model%alpha = alpha_of(model, model%lowest_frequency)
+      else if (mod(model%step, quotient_interval) == quotient_length) then
+         do body = 1, model%mesh%n_bodies
+            model%alpha(body) = alpha_of(model, rayleigh_frequency(body, &
+               model%mesh%body_of_node, model%fields%free_mass, &
+               model%fields%u - model%reference_u, model%fields%internal - model%reference_f, &
+               model%lowest_frequency(body)))
+         end do
+      end if
    end subroutine update_alpha
 
    elemental function alpha_of(model, omega) result(alpha)
@@ -313,7 +314,7 @@ contains
 
       do block = 1, size(failures)
          if (failures(block)%code == ok) cycle
-         write (words, '(a, i0, a, es11.4, a, i0, a, 4es11.3, a)') "step ", model%step, &
+         write (words, "(a, i0, a, es12.4e3, a, i0, a, 4es12.3e3, a)") "step ", model%step, &
             ", time ", model%step*model%dt, " s, element ", failures(block)%element, &
             ": no consistent return of the trial stress", failures(block)%trial*1.0e-6_wp, &
             " MPa (xx, yy, zz, xy)"
@@ -321,6 +322,28 @@ contains
          return
       end do
    end subroutine report_failure
+
+   !> No element may turn inside out: its answer would be smooth and wrong.
+   subroutine check_areas(model, status)
+      type(model_type), intent(in) :: model
+      type(status_type), intent(out) :: status
+
+      character(len=200) :: words
+      real(wp) :: x(2, 3)
+      integer :: element
+
+      do element = 1, model%mesh%n_elements
+         associate (corner => model%mesh%triangles(:, element))
+            x = model%mesh%nodes(:, corner) + model%fields%u(:, corner)
+         end associate
+         if (triangle_area(x(:, 1), x(:, 2), x(:, 3)) > 0.0_wp) cycle
+         write (words, "(a, i0, a, es12.4e3, a, i0, a)") "step ", model%step, ", time ", &
+            model%step*model%dt, " s, element ", element, &
+            ": it has turned inside out; try a finer mesh, a slower load or a smaller end strain"
+         call set_failure(status, bad_element, trim(words))
+         return
+      end do
+   end subroutine check_areas
 
    subroutine check_finite(model, status)
       type(model_type), intent(in) :: model
@@ -333,7 +356,7 @@ contains
       do node = 1, model%mesh%n_nodes
          if (.not. all(abs(model%fields%v(:, node)) <= huge(1.0_wp))) exit
       end do
-      write (words, '(a, i0, a, es11.4, a, i0, a)') "step ", model%step, ", time ", &
+      write (words, "(a, i0, a, es12.4e3, a, i0, a)") "step ", model%step, ", time ", &
          model%step*model%dt, " s, node ", min(node, model%mesh%n_nodes), &
          ": velocity is not finite; try a smaller time_step_factor or loading speed"
       call set_failure(status, not_finite, trim(words))

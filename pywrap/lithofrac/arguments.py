@@ -108,16 +108,19 @@ def _point(commands) -> None:
     one.add_argument(
         "--confinement-MPa",
         type=float,
-        default=0.0,
+        nargs="+",
+        default=[0.0],
         metavar="P",
         dest="confinement_MPa",
-        help="lateral pressure, default 0",
+        help="lateral pressure, default 0; several write TEST_pNN.parquet into the folder --out",
     )
     one.add_argument("--end-strain", type=float, metavar="E", help="axial strain at the end")
     one.add_argument(
         "--stiffness", type=float, metavar="K", help="of stiff_confinement, over Young's modulus"
     )
-    one.add_argument("--out", type=Path, required=True, metavar="FILE", help="curve, .parquet")
+    one.add_argument(
+        "--out", type=Path, required=True, metavar="FILE", help="curve, .parquet, or a folder"
+    )
 
 
 def _source_of_case(one: argparse.ArgumentParser) -> None:

@@ -17,37 +17,16 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
 from lithofrac.config import Material
 from lithofrac.core import Run
 from lithofrac.kernels import bare_elastic
 from lithofrac.problem import Mesh, Problem, Ramp, VelocityLoad
+from lithofrac.scenes._rectangle import rectangle
 
 ELEMENT_STEPS = 2.0e7  # in one window
+SIDE = 0.08  # [m]
 CELLS = {5_000: 50, 50_000: 158}  # elements: squares along a side, two triangles each
 WARM_UP = 50
-
-
-def square(n: int, side: float = 0.08) -> Mesh:
-    """n by n squares of two triangles with alternating diagonals, inner nodes moved by 15 %."""
-    rng = np.random.default_rng(12345)
-    line = np.linspace(0.0, side, n + 1)
-    nodes = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
-    inner = ((nodes > 0.0) & (nodes < side)).all(axis=1)
-    nodes[inner] += 0.15 * side / n * rng.uniform(-1.0, 1.0, (inner.sum(), 2))
-    i, j = (a.ravel() for a in np.meshgrid(np.arange(n), np.arange(n)))
-    a, c = j * (n + 1) + i, j * (n + 1) + i + n + 2
-    b, d = a + 1, c - 1
-    even = ((i + j) % 2 == 0)[:, None]
-    lower = np.where(even, np.column_stack([a, b, c]), np.column_stack([a, b, d]))
-    upper = np.where(even, np.column_stack([a, c, d]), np.column_stack([b, c, d]))
-    triangles = np.stack([lower, upper], axis=1).reshape(-1, 3).astype(np.int32)
-    body = np.zeros(len(triangles), dtype=np.int32)
-    edge = np.arange(n + 1, dtype=np.int32)
-    top = edge + n * (n + 1)
-    sides = {"bottom": edge[[*zip(range(n), range(1, n + 1), strict=True)]], "top": top[:, None]}
-    return Mesh(nodes, triangles, body, ("rock",), sides)
 
 
 def pressed(mesh: Mesh, material: Material, **changes) -> Problem:
@@ -98,7 +77,7 @@ def measure(repeat: int) -> list[dict]:
     rock = Material.load("quartzite")
     elastic = rock.model_copy(update={"elastic": True})
     for cells in CELLS.values():
-        mesh = square(cells)
+        mesh = rectangle(SIDE, SIDE, SIDE / cells, structured=True, seed=2)
         elements = len(mesh.triangles)
         count = max(100, round(ELEMENT_STEPS / elements / 100) * 100)
         subjects = {

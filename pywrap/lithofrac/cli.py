@@ -135,7 +135,7 @@ def report(options: Namespace) -> int:
 
 
 def point(options: Namespace) -> int:
-    """Drive one material point and write its curve."""
+    """Drive one material point and write its curve, or a folder of curves."""
     from lithofrac import point as bench
     from lithofrac.config import ConfigError
     from lithofrac.config.material import Material
@@ -147,14 +147,21 @@ def point(options: Namespace) -> int:
         raise ConfigError(f"--stiffness {options.stiffness:g}: expected a number not below 0")
     given = {"end_strain": options.end_strain, "stiffness": options.stiffness}
     more = {name: value for name, value in given.items() if value is not None}
+    one_file = options.out.suffix == ".parquet"
+    if one_file and len(options.confinement_MPa) > 1:
+        raise ConfigError(f"--out {options.out}: several confinements need a folder, not a file")
     try:
-        curve = bench.drive(
-            rock, test=options.test, confinement_MPa=options.confinement_MPa, **more
-        )
+        curves = {
+            confinement: bench.drive(rock, test=options.test, confinement_MPa=confinement, **more)
+            for confinement in options.confinement_MPa
+        }
     except ValueError as error:  # a test or number that the bench refuses
         raise ConfigError(str(error)) from None
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    curve.to_parquet(options.out, index=False)
+    for confinement, curve in curves.items():
+        name = f"{options.test}_p{confinement:04.1f}".removesuffix(".0")
+        path = options.out if one_file else options.out / f"{name}.parquet"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        curve.to_parquet(path, index=False)
     return GOOD
 
 

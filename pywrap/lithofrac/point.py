@@ -141,7 +141,7 @@ def drive(
     rock,
     test: str = "triaxial",
     confinement_MPa: float = 0.0,
-    end_strain: float = 0.015,
+    end_strain: float = 0.025,
     steps: int | Sequence[float] = STEPS,
     length_m: float = 1e-3,
     stiffness: float = 0.02,
@@ -156,8 +156,9 @@ def drive(
         times Young's modulus times the lateral strain), "extension" (axial stretching at constant
         pressure) or "tension" (the same without pressure)
     confinement_MPa : initial pressure, not negative
-    end_strain : axial strain at the end, a positive number also in extension
-    steps : number of equal steps, or the increasing axial strains to visit
+    end_strain : axial strain at the end, a positive number also in extension; the default lies
+        beyond the peak of all three rocks up to 40 MPa
+    steps : number of equal steps, or the increasing positive axial strains to visit
     length_m : crack band width [m]
 
     Returns
@@ -165,6 +166,13 @@ def drive(
     One row per step; steps are added where the plastic strain meets a knot of the table, so that
     peaks are not missed. Axial and lateral stresses and the axial strain are compression
     positive, the lateral strain extension positive, the volumetric strain dilation positive.
+
+    Raises
+    ------
+    ValueError
+        When there is no such test, or a number is outside the range named above.
+    CoreError
+        When no lateral strain meets the pressure, or no consistent return is found.
     """
     rock = as_material(rock)
     if test not in TESTS:
@@ -172,12 +180,25 @@ def drive(
     if not confinement_MPa >= 0.0 or (test == "tension" and confinement_MPa):
         raise ValueError(f"confinement_MPa = {confinement_MPa:g} makes no sense in test '{test}'")
     bench = _Bench(rock, test, confinement_MPa * MPA, length_m, stiffness * rock.young)
-    if np.ndim(steps) == 0:
-        steps = np.linspace(0.0, end_strain, int(steps) + 1)[1:]
+    path = _path(end_strain, steps)
     sense = 1.0 if test in ("extension", "tension") else -1.0
-    for strain in steps:
+    for strain in path:
         bench.advance(sense * float(strain))
     return bench.frame()
+
+
+def _path(end_strain: float, steps: int | Sequence[float]) -> np.ndarray:
+    """The axial strains to visit, all positive and each above the one before."""
+    if not 0.0 < end_strain < np.inf:
+        raise ValueError(f"end_strain = {end_strain:g}: expected a positive number in every test")
+    if np.ndim(steps) == 0:
+        if steps < 1:
+            raise ValueError(f"steps = {steps}: expected at least one")
+        return np.linspace(0.0, end_strain, int(steps) + 1)[1:]
+    path = np.asarray(steps, dtype=float)
+    if path.ndim != 1 or not np.all(np.diff(path, prepend=0.0) > 0.0):
+        raise ValueError("steps: expected positive axial strains, each above the one before")
+    return path
 
 
 class _Bench:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+import signal
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 
 import lithofrac
+from lithofrac.analysis.strength import first_peak
 from lithofrac.core import Run
 from lithofrac.errors import CoreError
 from lithofrac.problem import Problem
@@ -19,7 +23,8 @@ from lithofrac.results.files import write_json, write_table
 from lithofrac.results.recorder import Recorder
 
 CHECKPOINT_SECONDS = 20.0
-ELEMENT_STEPS_PER_SECOND = 25e6  # of one core, for the prediction of `plan`
+# Of one core, for the prediction of `plan`: all elastic, and with half of the elements yielding.
+ELASTIC_RATE, YIELDING_RATE = 60e6, 6e6  # element-steps per second
 
 
 def plan(problem: Problem) -> dict:
@@ -34,13 +39,14 @@ def plan(problem: Problem) -> dict:
     run = Run(problem)
     elements = len(problem.mesh.triangles)
     steps = math.ceil(problem.end_time / run.dt)
+    rate = YIELDING_RATE if any(m.options[3] for m in problem.materials) else ELASTIC_RATE
     return {
         "elements": elements,
         "nodes": len(problem.mesh.nodes),
         "bodies": len(problem.mesh.body_names),
         "time_step_s": run.dt,
         "steps": steps,
-        "expected_seconds": elements * steps / ELEMENT_STEPS_PER_SECOND,
+        "expected_seconds": elements * steps / rate,
         "uses": {
             "axisymmetry": problem.axisymmetric,
             "yield check": any(m.options[3] for m in problem.materials),
@@ -161,8 +167,11 @@ class _Session:
             self.save_checkpoint()
         saved = time.perf_counter()
         while run.step < self.steps:
-            run.advance(min(self.every, self.steps - run.step), self.threads)
-            self._record()
+            with _signals_later() as asked_to_stop:
+                run.advance(min(self.every, self.steps - run.step), self.threads)
+                self._record()
+            if asked_to_stop:
+                raise KeyboardInterrupt
             if progress is not None:
                 progress(self._progress())
             if time.perf_counter() - saved > CHECKPOINT_SECONDS:
@@ -208,7 +217,7 @@ class _Session:
 
     def _summary(self, status: str, message: str, history, energy) -> dict:
         run, elements = self.run, len(self.problem.mesh.triangles)
-        core = self.core_seconds
+        core, last = self.core_seconds, energy.iloc[-1]
         contact = run.contact_statistics()
         return {
             "status": status,
@@ -224,9 +233,12 @@ class _Session:
             "core_seconds": core,
             "wall_seconds": self.wall_seconds,
             "element_steps_per_core_second": elements * run.step / core,
-            "energy": {name: _finite(value) for name, value in energy.iloc[-1].items()},
+            "energy": {name: _finite(value) for name, value in last.items()},
             "energy_residual": _residual(energy),
             **_peak(history, energy),
+            "damping_over_external": _ratio(
+                -energy["damping_J"].iloc[-1], energy["external_J"].iloc[-1]
+            ),
             "max_plastic_strain": _finite(run.elements(np.arange(elements)).plastic_strain.max()),
             # without crack insertion these are zero by construction
             "cracks": 0,
@@ -239,11 +251,33 @@ class _Session:
         }
 
 
+@contextmanager
+def _signals_later() -> Iterator[list[int]]:
+    """Hold back Ctrl-C and SIGTERM, so that a step and its record stay together.
+
+    Yields a list that holds the signals which came meanwhile. Outside the main thread, where
+    Python delivers no signals, it stays empty.
+    """
+    came: list[int] = []
+    if threading.current_thread() is not threading.main_thread():
+        yield came
+        return
+    held = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.signal(number, lambda n, _: came.append(n)) for number in held}
+    try:
+        yield came
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
 def _peak(history, energy) -> dict:
-    """Largest axial stress, where it was, and kinetic over internal energy there."""
+    """First peak of the axial stress (else the largest), kinetic over internal energy there."""
     if "axial_stress_MPa" not in history:
         return {"peak_stress_MPa": None, "peak_strain": None, "kinetic_ratio_at_peak": None}
-    row = int(np.nanargmax(history["axial_stress_MPa"].to_numpy()))
+    stress = history["axial_stress_MPa"].to_numpy()
+    peak = first_peak(history["axial_strain"].to_numpy(), stress)
+    row = peak.index if peak is not None else int(np.nanargmax(stress))
     entry = energy.iloc[row]
     internal = (
         entry["elastic_J"] + entry["compressive_dissipation_J"] + entry["fracture_dissipation_J"]
@@ -261,6 +295,11 @@ def _residual(energy) -> float | None:
     internal = internal + energy["fracture_dissipation_J"]
     scale = max(internal.abs().max(), energy["external_J"].abs().max(), energy["kinetic_J"].max())
     return _finite(energy["residual_J"].abs().max() / scale) if scale > 0.0 else 0.0
+
+
+def _ratio(part: float, whole: float) -> float:
+    """`part / whole`, 0 where there is no whole."""
+    return float(part / whole) if whole else 0.0
 
 
 def _finite(value: float) -> float | None:

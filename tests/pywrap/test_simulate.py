@@ -1,6 +1,8 @@
 """A run from start to end: tables, frames, resume, failures (pywrap/lithofrac/run.py)."""
 
 import json
+import os
+import signal
 from dataclasses import replace
 
 import meshio
@@ -10,6 +12,7 @@ import pytest
 from models import Elastic, hold, problem, rectangle
 
 from lithofrac.config import Material
+from lithofrac.core import Run
 from lithofrac.errors import CoreError
 from lithofrac.problem import Damping, Measures, PressureLoad, Ramp
 from lithofrac.run import plan, simulate
@@ -109,6 +112,44 @@ def test_resumed_run_gives_the_same_tables(done, tmp_path):
         pd.testing.assert_frame_equal(one, two, check_exact=True)
     frames = [sorted(p.name for p in (f / "fields").iterdir()) for f in (done[0], tmp_path)]
     assert frames[0] == frames[1]
+
+
+@pytest.mark.restart
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signal_in_the_middle_of_the_steps_loses_no_row(done, tmp_path, monkeypatch, number):
+    """Delivered while the core is at work, before its record is taken."""
+    advance, calls = Run.advance, []
+
+    def interrupted(self, steps, threads=1):
+        advance(self, steps, threads)
+        calls.append(steps)
+        if len(calls) == 9:
+            os.kill(os.getpid(), number)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Run, "advance", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            simulate(specimen(), tmp_path)
+    simulate(specimen(), tmp_path, resume=True)
+    for name in ("history", "energy", "probes"):
+        one = pd.read_parquet(done[0] / f"{name}.parquet")
+        two = pd.read_parquet(tmp_path / f"{name}.parquet")
+        pd.testing.assert_frame_equal(one, two, check_exact=True)
+
+
+def test_element_that_turns_inside_out_is_named(tmp_path):
+    mesh = rectangle(2, 2, 0.01, 0.01)
+    crush = problem(
+        mesh,
+        velocity_loads=(
+            hold("bottom", mesh.nodes_of("bottom"), 1),
+            hold("top", mesh.nodes_of("top"), 1, -50.0),
+        ),
+        end_time=1e-3,
+        fields=0,
+    )
+    with pytest.raises(CoreError, match=r"element \d+: it has turned inside out"):
+        simulate(crush, tmp_path)
 
 
 def test_failure_leaves_a_state_to_look_at_and_a_checkpoint(tmp_path):

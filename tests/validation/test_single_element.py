@@ -85,7 +85,7 @@ def test_uniaxial_peak_first_yield_and_residual_are_the_printed_ones(name):
         assert top["plastic_strain"] == pytest.approx(at, abs=1e-12)
         fine = point.drive(rock, test, steps=np.linspace(0.0, 0.002, 4001)[1:])
         onset = fine.loc[fine["active"].ne(0).idxmax()]
-        assert onset["axial_stress_MPa"] == pytest.approx(first, abs=0.1)
+        assert onset["axial_stress_MPa"] == pytest.approx(first, abs=0.05)
     for pressure in (0, 10):
         curve = point.drive(rock, "triaxial", pressure, end_strain=0.06)
         end = curve["axial_stress_MPa"].iloc[-1]
@@ -119,7 +119,7 @@ def test_strain_at_the_peak_has_the_printed_digits(name):
                 100.0 * peak(point.drive(rock, test, pressure, END_STRAIN, steps))["axial_strain"]
                 for steps in (600, 1200)
             )
-            assert 2.0 * fine - coarse == pytest.approx(value, abs=6e-4), (pressure, test)
+            assert 2.0 * fine - coarse == pytest.approx(value, abs=5e-4), (pressure, test)
             assert abs(fine - coarse) < 5e-4
 
 
@@ -128,7 +128,7 @@ def test_sandstone_strength_against_confinement_is_the_printed_one():
     for pressure, strength in ((5, 143.6), (10, 186.9), (20, 273.7), (30, 360.5)):
         for test in ("triaxial", "plane_strain"):
             top = peak(point.drive(rock, test, pressure, END_STRAIN, 300))
-            assert top["axial_stress_MPa"] == pytest.approx(strength, abs=0.06)
+            assert top["axial_stress_MPa"] == pytest.approx(strength, abs=0.05)
 
 
 def test_stiff_confinement_peaks_drops_and_hardens_again():
@@ -140,7 +140,7 @@ def test_stiff_confinement_peaks_drops_and_hardens_again():
         first = next(i for i in range(1, len(stress) - 1) if stress[i] > stress[i + 1])
         while stress[first : first + 5].max() > stress[first]:
             first += int(stress[first : first + 5].argmax())
-        assert stress[first] == pytest.approx(strength, abs=0.8)
+        assert stress[first] == pytest.approx(strength, abs=0.5)
         bottom = first + stress[first:].argmin()
         assert stress[bottom] < 0.97 * stress[first]
         assert stress[-1] > stress[bottom]
@@ -266,3 +266,37 @@ def test_a_batch_of_points_is_stepped_as_each_alone():
         assert one.active[0] == info.active[i]
     with pytest.raises(ValueError, match="expected"):
         point.step(rock, strain[:3], point.State.virgin(rock, 20))
+
+
+@pytest.mark.parametrize("test", point.TESTS)
+@pytest.mark.parametrize("end_strain", [0.0, -0.01, float("nan"), float("inf")])
+def test_an_end_strain_that_is_not_positive_is_refused_in_every_test(test, end_strain):
+    with pytest.raises(ValueError, match=f"end_strain = {end_strain:g}: expected a positive"):
+        point.drive(load("sandstone"), test, end_strain=end_strain)
+
+
+@pytest.mark.parametrize("test", ["triaxial", "tension"])
+@pytest.mark.parametrize(
+    "steps",
+    [[1e-3, 5e-4], [1e-3, 1e-3], [0.0, 1e-3], [-1e-3, 1e-3], [1e-3, float("nan")], [[1e-3]]],
+)
+def test_strains_to_visit_that_do_not_increase_are_refused(test, steps):
+    with pytest.raises(ValueError, match="steps: expected positive axial strains, each above"):
+        point.drive(load("sandstone"), test, steps=steps)
+
+
+@pytest.mark.parametrize("steps", [0, -3])
+def test_a_test_without_steps_is_refused(steps):
+    with pytest.raises(ValueError, match=f"steps = {steps}: expected at least one"):
+        point.drive(load("sandstone"), steps=steps)
+
+
+@pytest.mark.parametrize("test", ["triaxial", "plane_strain"])
+@pytest.mark.parametrize("name", ROCKS)
+def test_the_default_end_lies_beyond_every_peak(name, test):
+    rock = load(name)
+    for pressure in CONFINEMENTS:
+        curve = point.drive(rock, test, pressure)
+        assert peak(curve)["axial_strain"] < 0.9 * curve["axial_strain"].iloc[-1]
+        exact = line(rock, np.linspace(0.0, 0.03, 30_001), pressure).max()
+        assert peak(curve)["axial_stress_MPa"] == pytest.approx(exact, abs=1e-3)

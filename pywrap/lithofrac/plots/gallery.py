@@ -16,8 +16,9 @@ from lithofrac.plots.sandstone import TITLES, draw_curve
 def figure(inputs: list[Path], data: Path) -> Figure:
     """Axial stress against strain on the left, plastic strain at the end on the right."""
     runs = find_runs(inputs)
+    widths = [1.2 * max(len(runs), 3)] + len(runs) * [1]
     drawn, axes = style.new_figure(
-        1, 1 + len(runs), height=3.6, gridspec_kw={"width_ratios": [3.6] + len(runs) * [1]}
+        1, 1 + len(runs), height=3.6, gridspec_kw={"width_ratios": widths}
     )
     colours = style.confinement_colours([run.confinement_MPa for run in runs])
     curves, *specimens = axes[0]
@@ -28,14 +29,16 @@ def figure(inputs: list[Path], data: Path) -> Figure:
         )
     curves.set(xlabel="axial strain [%]", ylabel="axial stress [MPa]", xlim=(0, None))
     curves.set_title(f"sandstone, {TITLES.get(runs[0].test, runs[0].test)}")
-    curves.set_ylim(0, 1.25 * curves.get_ylim()[1])
-    curves.legend(loc="upper center", ncols=len(runs), title="confinement", columnspacing=1.0)
+    curves.set_ylim(0, None)
+    curves.legend(loc="upper left", title="confinement", handlelength=1.2)
     fields = [last_frame(run) for run in runs]
     top = max(float(np.quantile(field.cell_data["plastic_strain"][0], 0.99)) for field in fields)
     for panel, run, field in zip(specimens, runs, fields, strict=True):
         drawn_field = draw_plastic_strain(panel, field, max(top, 1e-6))
         panel.set_title(f"{run.confinement_MPa:g} MPa", loc="center", fontweight="normal")
-    bar = drawn.colorbar(drawn_field, ax=specimens, shrink=0.7, pad=0.02)
+    bar = drawn.colorbar(
+        drawn_field, ax=specimens, orientation="horizontal", shrink=0.8, pad=0.04, aspect=30
+    )
     bar.set_label("effective plastic strain at the end [-]")
     return drawn
 

@@ -14,7 +14,10 @@ from lithofrac.config.material import Material
 from lithofrac.data import Curve, load_curves
 from lithofrac.plots import style
 
-TITLES = {"triaxial": "triaxial, soft pressure", "plane_strain": "plane strain, stiff platens"}
+TITLES = {
+    "triaxial": "triaxial, soft pressure",
+    "plane_strain": "plane strain, stiff lateral spring",
+}
 DEFAULT_STIFFNESS = 0.02  # over Young's modulus: the calibrated value of the plane strain series
 SWEEP = (("v", style.ORANGE), ("s", style.RED), ("D", style.PURPLE), ("P", style.SKY))
 SERIES = ("^", "x", "+", "1", "2")  # markers of digitised series

@@ -165,6 +165,22 @@ def test_a_point_is_driven_into_a_table(tmp_path):
     assert peak == pytest.approx(187.0, rel=1e-3)  # Table 1 at 10 MPa
 
 
+def test_several_confinements_fill_a_folder(tmp_path):
+    words = ["point", "sandstone", "--confinement-MPa", "0", "2.5", "10", "--out", str(tmp_path)]
+    assert main(words) == 0
+    names = sorted(path.name for path in tmp_path.iterdir())
+    assert names == ["triaxial_p00.parquet", "triaxial_p02.5.parquet", "triaxial_p10.parquet"]
+
+
+def test_several_confinements_do_not_fit_into_a_file(tmp_path, capsys):
+    out = tmp_path / "one.parquet"
+    words = ["point", "sandstone", "--confinement-MPa", "0", "10", "--out", str(out)]
+    assert main(words) == 2
+    message = f"--out {out}: several confinements need a folder, not a file"
+    assert message in capsys.readouterr().err
+    assert not out.exists()
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

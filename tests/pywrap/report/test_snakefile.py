@@ -31,6 +31,11 @@ while [ $# -gt 1 ]; do
   if [ "$1" = --out ]; then
     if [ $command = run ]; then
       mkdir -p "$2" && touch "$2/summary.json" "$2/history.parquet"
+    elif [ $command = point ]; then
+      mkdir -p "$2"
+      for test in triaxial stiff_confinement; do
+        for p in 00 01 02 05 10 15 20 30 40; do touch "$2/${test}_p$p.parquet"; done
+      done
     else
       touch "$2"
     fi
