@@ -5,7 +5,7 @@
 module lithofrac_run_contact_step
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: bad_contact, set_failure, status_type
-   use lithofrac_contact_contact, only: prescribed_collision, solve_contact, solved, too_fast
+   use lithofrac_contact_solve, only: prescribed_collision, solve_contact, solved, too_fast
    use lithofrac_run_model, only: model_type
    use lithofrac_run_node_update, only: n_sums
    use lithofrac_run_settings, only: no_damping, relative_to_affine
