@@ -4,7 +4,7 @@ module lithofrac_base_status
    private
 
    public :: status_type, set_failure
-   public :: ok, bad_input, no_return_map, not_finite, bad_element, bad_checkpoint
+   public :: ok, bad_input, no_return_map, not_finite, bad_element, bad_checkpoint, bad_contact
 
    integer, parameter :: ok = 0
    integer, parameter :: bad_input = 1       !! a value that makes no sense
@@ -12,6 +12,7 @@ module lithofrac_base_status
    integer, parameter :: not_finite = 3      !! NaN or infinity in a field
    integer, parameter :: bad_element = 4     !! area not positive
    integer, parameter :: bad_checkpoint = 5  !! state does not fit the model
+   integer, parameter :: bad_contact = 6     !! bodies that cannot be kept apart
 
    !> Outcome of a call: `code == ok`, or a code above with words for a person.
    type :: status_type

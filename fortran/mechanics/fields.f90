@@ -18,6 +18,7 @@ module lithofrac_mechanics_fields
       real(wp), allocatable :: v(:, :)             !! (2, n_nodes) velocity at the half step [m/s]
       real(wp), allocatable :: internal(:, :)      !! (2, n_nodes) internal force [N]
       real(wp), allocatable :: external(:, :)      !! (2, n_nodes) pressure force [N]
+      real(wp), allocatable :: contact(:, :)       !! (2, n_nodes) contact force [N]
       real(wp), allocatable :: mass(:)             !! (n_nodes) [kg]
       real(wp), allocatable :: inverse_mass(:, :)  !! (2, n_nodes) 0 where prescribed [1/kg]
       real(wp), allocatable :: free_mass(:, :)     !! (2, n_nodes) 0 where prescribed [kg]
@@ -48,6 +49,7 @@ contains
 
       allocate (fields%u(2, n_nodes), fields%v(2, n_nodes), source=0.0_wp)
       allocate (fields%internal(2, n_nodes), fields%external(2, n_nodes), source=0.0_wp)
+      allocate (fields%contact(2, n_nodes), source=0.0_wp)
       allocate (fields%mass(n_nodes), source=0.0_wp)
       allocate (fields%inverse_mass(2, n_nodes), fields%free_mass(2, n_nodes), source=0.0_wp)
    end subroutine new_fields

@@ -129,7 +129,7 @@ contains
 
       associate (node => load%node(i), k => load%component)
          force = fields%mass(node)*(load%now - load%before(i))/dt + fields%internal(k, node) &
-            - fields%external(k, node)
+            - fields%external(k, node) - fields%contact(k, node)
       end associate
    end function reaction
 

@@ -5,6 +5,9 @@
 module lithofrac_run_checkpoint
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: bad_checkpoint, set_failure, status_type
+   use lithofrac_contact_contact, only: contact_type, prepare_list
+   use lithofrac_contact_surfaces, only: update_shape
+   use lithofrac_run_contact_step, only: bring_masses
    use lithofrac_run_model, only: model_type
    implicit none
    private
@@ -20,6 +23,7 @@ module lithofrac_run_checkpoint
    contains
       procedure :: visit
       procedure :: visit_scalar
+      procedure :: visit_count
       procedure :: visit_flags
    end type visitor_type
 
@@ -57,13 +61,14 @@ contains
 
       type(visitor_type) :: visitor
 
-      if (size(buffer) /= checkpoint_size(model)) then
-         call set_failure(status, bad_checkpoint, "checkpoint: it belongs to another model")
-         return
-      end if
       visitor%mode = restoring
       visitor%buffer = buffer
       call visit_model(visitor, model)
+      if (visitor%place /= size(buffer)) then
+         call set_failure(status, bad_checkpoint, "checkpoint: it belongs to another model")
+         return
+      end if
+      if (model%contact%on) call bring_masses(model)
       model%started = .true.
    end subroutine restore
 
@@ -72,12 +77,9 @@ contains
       type(visitor_type), intent(inout) :: visitor
       type(model_type), intent(inout) :: model
 
-      real(wp) :: step
       integer :: i
 
-      step = model%step
-      call visitor%visit_scalar(step)
-      model%step = nint(step)
+      call visitor%visit_count(model%step)
       call visitor%visit_flags(model%state%touched)
       call visitor%visit(size(model%fields%u), model%fields%u)
       call visitor%visit(size(model%fields%v), model%fields%v)
@@ -115,7 +117,47 @@ contains
          call visitor%visit(size(model%pressures(i)%force), model%pressures(i)%force)
          call visitor%visit_scalar(model%pressures(i)%power_before)
       end do
+      if (model%contact%on) call visit_contact(visitor, model)
    end subroutine visit_model
+
+   !> Contact comes last: the length of its list is known only with the list.
+   subroutine visit_contact(visitor, model)
+      type(visitor_type), intent(inout) :: visitor
+      type(model_type), intent(inout) :: model
+
+      real(wp) :: listed
+
+      call visitor%visit(size(model%fields%contact), model%fields%contact)
+      call visitor%visit_scalar(model%ledger%contact)
+      call visitor%visit_scalar(model%ledger%friction)
+      associate (contact => model%contact)
+         call visitor%visit(size(contact%work_before), contact%work_before)
+         call visitor%visit(size(contact%work_after), contact%work_after)
+         call visitor%visit(size(contact%candidates%u), contact%candidates%u)
+         call visitor%visit(size(contact%tangent), contact%tangent)
+         call visitor%visit_count(contact%statistics%pairs_max)
+         call visitor%visit_count(contact%statistics%steps)
+         call visitor%visit_count(contact%statistics%sweeps)
+         call visitor%visit_count(contact%statistics%unconverged)
+         call visitor%visit_count(contact%statistics%lists)
+         call visitor%visit_scalar(contact%statistics%penetration)
+         listed = merge(1.0_wp, 0.0_wp, contact%candidates%listed)
+         call visitor%visit_scalar(listed)
+         if (listed < 0.5_wp) return
+         if (visitor%mode == restoring) call renew(contact)
+         call visitor%visit(size(contact%corner_impulse), contact%corner_impulse)
+         call visitor%visit(size(contact%edge_impulse), contact%edge_impulse)
+      end associate
+   end subroutine visit_contact
+
+   !> The list of a saved run follows from the positions that it was made for.
+   subroutine renew(contact)
+      type(contact_type), intent(inout) :: contact
+
+      contact%surfaces%u = contact%candidates%u
+      call update_shape(contact%surfaces)
+      call prepare_list(contact)
+   end subroutine renew
 
    !> Count, save or restore `n` numbers.
    subroutine visit(self, n, values)
@@ -127,7 +169,9 @@ contains
       case (saving)
          self%buffer(self%place + 1:self%place + n) = values
       case (restoring)
-         values = self%buffer(self%place + 1:self%place + n)
+         if (self%place + n <= size(self%buffer)) then
+            values = self%buffer(self%place + 1:self%place + n)
+         end if
       case default
          continue  ! counting only
       end select
@@ -144,6 +188,17 @@ contains
       call self%visit(1, one)
       value = one(1)
    end subroutine visit_scalar
+
+   subroutine visit_count(self, count)
+      class(visitor_type), intent(inout) :: self
+      integer, intent(inout) :: count
+
+      real(wp) :: value
+
+      value = count
+      call self%visit_scalar(value)
+      count = nint(value)
+   end subroutine visit_count
 
    subroutine visit_flags(self, flags)
       class(visitor_type), intent(inout) :: self

@@ -1,7 +1,7 @@
 !> The energy ledger: two sides, accumulated independently.
 !>
 !> Inside: elastic energy of the elements and what they dissipated. Outside: work of the
-!> boundary and of damping at the nodes, and the kinetic energy of the leap-frog. Their
+!> boundary, of contact and of damping at the nodes, and the kinetic energy of the leap-frog. Their
 !> difference is the residual; nothing is defined as the missing term.
 module lithofrac_run_energy
    use lithofrac_base_kinds, only: wp
@@ -10,7 +10,7 @@ module lithofrac_run_energy
 
    public :: ledger_type, n_ledger, pack_ledger, residual
 
-   integer, parameter :: n_ledger = 8  !! entries of `pack_ledger`
+   integer, parameter :: n_ledger = 10  !! entries of `pack_ledger`
 
    type :: ledger_type
       real(wp) :: initial = 0.0_wp      !! kinetic and elastic at the start [J]
@@ -20,6 +20,8 @@ module lithofrac_run_energy
       real(wp) :: fracture = 0.0_wp     !! dissipated by the tension planes [J]
       real(wp) :: external = 0.0_wp     !! work of the boundary [J]
       real(wp) :: damping = 0.0_wp      !! work of damping, negative when it takes energy [J]
+      real(wp) :: contact = 0.0_wp      !! work of contact pressure [J], <= 0 where it is exact
+      real(wp) :: friction = 0.0_wp     !! work of friction, negative when it takes energy [J]
       real(wp) :: scale = 0.0_wp        !! largest internal energy so far [J]
    end type ledger_type
 
@@ -34,17 +36,19 @@ contains
 
       scale = max(abs(ledger%external), abs(ledger%initial), ledger%scale)
       residual = ledger%kinetic + ledger%elastic + ledger%compressive + ledger%fracture &
-         - ledger%initial - ledger%external - ledger%damping
+         - ledger%initial - ledger%external - ledger%damping - ledger%contact - ledger%friction
       if (scale > 0.0_wp) residual = residual/scale
    end function residual
 
-   !> kinetic, elastic, compressive, fracture, external, damping, residual, initial.
+   !> kinetic, elastic, compressive, fracture, external, damping, residual, initial, contact,
+   !> friction.
    pure function pack_ledger(ledger) result(values)
       type(ledger_type), intent(in) :: ledger
       real(wp) :: values(n_ledger)
 
       values = [ledger%kinetic, ledger%elastic, ledger%compressive, ledger%fracture, &
-         ledger%external, ledger%damping, residual(ledger), ledger%initial]
+         ledger%external, ledger%damping, residual(ledger), ledger%initial, &
+         ledger%contact, ledger%friction]
    end function pack_ledger
 
 end module lithofrac_run_energy

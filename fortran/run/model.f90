@@ -2,6 +2,9 @@
 module lithofrac_run_model
    use lithofrac_base_kinds, only: pi, wp
    use lithofrac_base_status, only: bad_input, ok, set_failure, status_type
+   use lithofrac_contact_contact, only: contact_type, new_contact
+   use lithofrac_contact_overlap, only: refuse_overlap
+   use lithofrac_contact_surfaces, only: tag_edges
    use lithofrac_material_rock, only: rock_type
    use lithofrac_mechanics_blocks, only: blocks_type, new_blocks
    use lithofrac_mechanics_chunks, only: chunks_type, new_chunks
@@ -17,7 +20,7 @@ module lithofrac_run_model
    implicit none
    private
 
-   public :: add_pressure, add_velocity, model_type, new_model, set_motion
+   public :: add_contact, add_pressure, add_velocity, model_type, new_model, set_motion, tag_surface
 
    type :: model_type
       type(mesh_type) :: mesh
@@ -28,6 +31,7 @@ module lithofrac_run_model
       type(inelastic_type) :: state
       type(velocity_type), allocatable :: velocities(:)
       type(pressure_type), allocatable :: pressures(:)
+      type(contact_type) :: contact
       type(settings_type) :: settings
       type(ledger_type) :: ledger
       real(wp) :: dt = 0.0_wp                             !! [s]
@@ -39,7 +43,7 @@ module lithofrac_run_model
       real(wp), allocatable :: alpha(:)                   !! (n_bodies) damping [1/s]
       type(affine_type), allocatable :: affine(:)         !! (n_bodies)
       real(wp), allocatable :: moments(:, :)              !! (n_moments, n_runs)
-      real(wp), allocatable :: sums(:, :)                 !! (n_sums, n_runs)
+      real(wp), allocatable :: sums(:, :)                 !! (n_sums, n_runs + 1) last: by contact
       real(wp), allocatable :: reference_u(:, :)          !! state of the last Rayleigh quotient
       real(wp), allocatable :: reference_f(:, :)
    end type model_type
@@ -80,7 +84,7 @@ contains
       allocate (model%affine(model%mesh%n_bodies))
       allocate (model%alpha(model%mesh%n_bodies), source=max(0.0_wp, settings%damping_alpha))
       allocate (model%moments(n_moments, model%blocks%n_runs), source=0.0_wp)
-      allocate (model%sums(n_sums, model%blocks%n_runs), source=0.0_wp)
+      allocate (model%sums(n_sums, model%blocks%n_runs + 1), source=0.0_wp)
       call set_mass(model)
       call set_time_step(model)
       call set_frequencies(model)
@@ -215,6 +219,36 @@ contains
       end do
       model%pressures = [model%pressures, load]
    end subroutine add_pressure
+
+   !> Let the boundary touch itself; what is overlapped from the start is refused.
+   subroutine add_contact(model, friction, status)
+      type(model_type), intent(inout) :: model
+      real(wp), intent(in) :: friction(:, :)   !! by surface tag; bodies are the first tags
+      type(status_type), intent(out) :: status
+
+      if (model%started) then
+         call set_failure(status, bad_input, "contact: the run has started")
+         return
+      end if
+      call new_contact(model%contact, model%mesh, friction, status)
+      if (status%code == ok) call refuse_overlap(model%contact%surfaces, model%mesh, status)
+   end subroutine add_contact
+
+   !> Give some edges of the boundary a surface tag of their own, after `add_contact`.
+   subroutine tag_surface(model, edge, tag, status)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: edge(:, :)        !! (2, n) nodes, material on the left
+      integer, intent(in) :: tag
+      type(status_type), intent(out) :: status
+
+      if (.not. model%contact%on .or. model%started) then
+         call set_failure(status, bad_input, "contact: tag surfaces between contact and the start")
+      else if (tag < 1 .or. tag > size(model%contact%friction, 1)) then
+         call set_failure(status, bad_input, "contact: a surface has no friction")
+      else
+         call tag_edges(model%contact%surfaces, edge, tag, status)
+      end if
+   end subroutine tag_surface
 
    !> Start from given displacements and velocities at time 0.
    subroutine set_motion(model, u, v, status)

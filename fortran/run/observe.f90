@@ -35,6 +35,8 @@ contains
          ledger%external = ledger%external &
             + work_before(model%velocities, model%pressures, model%dt, model%fields)
          ledger%damping = ledger%damping + 0.5_wp*model%dt*sum(model%sums(2, :))
+         ledger%contact = ledger%contact + model%contact%work_before(1)
+         ledger%friction = ledger%friction + model%contact%work_before(2)
       end if
       model%ledger%scale = max(model%ledger%scale, ledger%elastic + ledger%compressive &
          + ledger%fracture)

@@ -1,4 +1,4 @@
-!> The time loop: forces, boundary, nodes, and again.
+!> The time loop: forces, boundary, nodes, contact, and again.
 !>
 !> Between calls the fields are at time n: displacement u(n), internal force of u(n) and the
 !> velocity of the half step after it. The next call starts by moving the nodes.
@@ -6,10 +6,13 @@ module lithofrac_run_step
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: bad_element, bad_input, no_return_map, not_finite, ok, &
       set_failure, status_type
+   use lithofrac_contact_overlap, only: refuse_overlap
    use lithofrac_mechanics_blocks, only: assemble
    use lithofrac_mechanics_internal_force, only: chunk_force, failure_type
    use lithofrac_mechanics_loads, only: apply_pressure, apply_velocity, work_after, work_before
    use lithofrac_mesh_mesh, only: triangle_area
+   use lithofrac_run_contact_step, only: bring_masses, book_contact, close_contacts, &
+      note_velocities
    use lithofrac_run_damping, only: fit_affine, rayleigh_frequency
    use lithofrac_run_model, only: model_type
    use lithofrac_run_node_update, only: sum_moments, update_affine, update_ground, &
@@ -53,9 +56,14 @@ contains
             model%blocks%first_node(run), model%blocks%first_node(run + 1) - 1, 0.0_wp)
       end do
       call set_damping(model)
+      if (model%contact%on) call note_velocities(model)
       do run = 1, model%blocks%n_runs
          call move_run(model, run, drift=.false.)
       end do
+      if (model%contact%on) then
+         call start_contact(model, status)
+         if (status%code /= ok) return
+      end if
       model%started = .true.
       model%ledger%initial = kinetic_energy(model) + sum(internal_energy(model))
       call check_finite(model, status)
@@ -71,6 +79,7 @@ contains
       type(status_type), intent(out) :: status
 
       type(failure_type), allocatable :: failures(:)
+      type(status_type) :: contact_status
       integer :: k, block, run
       logical :: failed
 
@@ -85,11 +94,7 @@ contains
       !$omp parallel default(shared) private(k, block, run) num_threads(threads)
       !$omp do schedule(static)
       do run = 1, model%blocks%n_runs
-         associate (first => model%blocks%first_node(run), &
-               last => model%blocks%first_node(run + 1) - 1)
-            model%fields%u(:, first:last) = model%fields%u(:, first:last) &
-               + model%dt*model%fields%v(:, first:last)
-         end associate
+         call drift_run(model, run)
       end do
       !$omp end do
       do k = 1, n_steps
@@ -106,12 +111,24 @@ contains
          !$omp do schedule(static)
          do run = 1, model%blocks%n_runs
             call assemble(model%blocks, run, model%fields%internal)
-            call move_run(model, run, drift=k < n_steps)
+            call move_run(model, run, drift=k < n_steps .and. .not. model%contact%on)
+         end do
+         !$omp end do
+         if (.not. model%contact%on) cycle
+         !$omp single
+         call close_contacts(model, contact_status)
+         !$omp end single
+         if (contact_status%code /= ok) exit
+         !$omp do schedule(static)
+         do run = 1, model%blocks%n_runs
+            call sum_run(model, run)
+            if (k < n_steps) call drift_run(model, run)
          end do
          !$omp end do
       end do
       !$omp end parallel
       call report_failure(model, failures, status)
+      if (status%code == ok) status = contact_status
       if (status%code == ok) call check_finite(model, status)
       if (status%code == ok) call check_areas(model, status)
    end subroutine advance
@@ -147,6 +164,10 @@ contains
          if (model%step > 0) ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(2, :))
          ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(3, :))
       end associate
+      if (model%contact%on) then
+         call book_contact(model)
+         call note_velocities(model)
+      end if
       model%step = model%step + 1
       call load_boundary(model)
       call set_damping(model)
@@ -246,6 +267,47 @@ contains
             model%sums(:, run))
       end select
    end subroutine move_run
+
+   !> Move a run of nodes with the velocities of the half step.
+   subroutine drift_run(model, run)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: run
+
+      associate (first => model%blocks%first_node(run), &
+            last => model%blocks%first_node(run + 1) - 1)
+         model%fields%u(:, first:last) = model%fields%u(:, first:last) &
+            + model%dt*model%fields%v(:, first:last)
+      end associate
+   end subroutine drift_run
+
+   !> Moments of a run of nodes once contact has changed its velocities.
+   subroutine sum_run(model, run)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: run
+
+      if (model%settings%damping /= relative_to_affine) return
+      model%moments(:, run) = sum_moments(model%fields, model%mesh%nodes, &
+         model%blocks%first_node(run), model%blocks%first_node(run + 1) - 1, model%dt)
+   end subroutine sum_run
+
+   !> Contact at time 0, where a given displacement may have made parts overlap.
+   subroutine start_contact(model, status)
+      type(model_type), intent(inout) :: model
+      type(status_type), intent(out) :: status
+
+      integer :: run
+
+      associate (surfaces => model%contact%surfaces)
+         surfaces%u = model%fields%u(:, surfaces%node)
+         call refuse_overlap(surfaces, model%mesh, status)
+      end associate
+      if (status%code /= ok) return
+      call bring_masses(model)
+      call close_contacts(model, status)
+      do run = 1, model%blocks%n_runs
+         call sum_run(model, run)
+      end do
+   end subroutine start_contact
 
    !> Put the first failure into words.
    subroutine report_failure(model, failures, status)

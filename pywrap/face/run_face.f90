@@ -7,7 +7,8 @@ module run_face
    use lithofrac_mechanics_loads, only: ramp_type
    use lithofrac_run_checkpoint, only: checkpoint_size, restore, save_state
    use lithofrac_run_energy, only: ledger_type, pack_ledger
-   use lithofrac_run_model, only: add_pressure, add_velocity, model_type, new_model, set_motion
+   use lithofrac_run_model, only: add_contact, add_pressure, add_velocity, model_type, new_model, &
+      set_motion, tag_surface
    use lithofrac_run_observe, only: element_state, energy_now, load_records
    use lithofrac_run_settings, only: settings_type
    use lithofrac_run_step, only: advance
@@ -16,6 +17,7 @@ module run_face
 
    public :: run_new, run_drop, run_add_velocity, run_add_pressure, run_set_motion
    public :: run_advance, run_clock, run_energy, run_loads, run_elements, run_nodes
+   public :: run_add_contact, run_tag_surface, run_contact_forces, run_contact_statistics
    public :: run_checkpoint_size, run_save, run_restore
 
    integer, parameter :: max_runs = 64
@@ -127,6 +129,37 @@ contains
       call export_status(status, code, message)
    end subroutine run_add_pressure
 
+   !> Let the boundary touch itself, with friction by surface tag; bodies are the first tags.
+   subroutine run_add_contact(run, friction, n_tags, code, message)
+      integer(c_int), intent(in) :: run, n_tags
+      real(c_double), intent(in) :: friction(n_tags, n_tags)
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      type(status_type) :: status
+
+      call check_handle(run, code, message)
+      if (code /= ok) return
+      call add_contact(slots(run)%model, friction, status)
+      call export_status(status, code, message)
+   end subroutine run_add_contact
+
+   !> Give some edges of the boundary the surface tag `tag`.
+   subroutine run_tag_surface(run, edge, n, tag, code, message)
+      integer(c_int), intent(in) :: run, n
+      integer(c_int), intent(in) :: edge(2, n)         !! material on the left
+      integer(c_int), intent(in) :: tag
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      type(status_type) :: status
+
+      call check_handle(run, code, message)
+      if (code /= ok) return
+      call tag_surface(slots(run)%model, edge, tag, status)
+      call export_status(status, code, message)
+   end subroutine run_tag_surface
+
    !> Displacement and velocity at time 0.
    subroutine run_set_motion(run, u, v, n_nodes, code, message)
       integer(c_int), intent(in) :: run, n_nodes
@@ -180,10 +213,11 @@ contains
       element = slots(run)%model%critical_element
    end subroutine run_clock
 
-   !> The ledger: kinetic, elastic, compressive, fracture, external, damping [J], residual, initial.
+   !> The ledger: kinetic, elastic, compressive, fracture, external, damping [J], residual
+   !> (relative), initial, contact, friction [J].
    subroutine run_energy(run, values, code, message)
       integer(c_int), intent(in) :: run
-      real(c_double), intent(out) :: values(8)
+      real(c_double), intent(out) :: values(10)
       integer(c_int), intent(out) :: code
       character(len=256), intent(out) :: message
 
@@ -239,6 +273,38 @@ contains
       v = slots(run)%model%fields%v
       mass = slots(run)%model%fields%mass
    end subroutine run_nodes
+
+   !> Contact force on every node at the time of the fields.
+   subroutine run_contact_forces(run, n_nodes, force, code, message)
+      integer(c_int), intent(in) :: run, n_nodes
+      real(c_double), intent(out) :: force(2, n_nodes)  !! [N]
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      force = 0.0_c_double
+      call check_handle(run, code, message)
+      if (code == ok) force = slots(run)%model%fields%contact
+   end subroutine run_contact_forces
+
+   !> Most pairs, steps with pairs, sweeps, steps not converged, lists made; deepest penetration
+   !> over the shortest edge.
+   subroutine run_contact_statistics(run, counts, penetration, code, message)
+      integer(c_int), intent(in) :: run
+      integer(c_int), intent(out) :: counts(5)
+      real(c_double), intent(out) :: penetration
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      counts = 0
+      penetration = 0.0_c_double
+      call check_handle(run, code, message)
+      if (code /= ok) return
+      associate (statistics => slots(run)%model%contact%statistics)
+         counts = [statistics%pairs_max, statistics%steps, statistics%sweeps, &
+            statistics%unconverged, statistics%lists]
+         penetration = statistics%penetration
+      end associate
+   end subroutine run_contact_statistics
 
    !> Numbers in a checkpoint.
    subroutine run_checkpoint_size(run, n, code, message)

@@ -11,14 +11,16 @@ import numpy as np
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 from lithofrac import _core
-from lithofrac.errors import checked
-from lithofrac.problem import Damping, Problem
+from lithofrac.errors import CoreError, checked
+from lithofrac.problem import Contact, Damping, Mesh, Problem
 
 _face = _core.run_face
 _new = checked(_face.run_new)
 _drop = checked(_face.run_drop)
 _add_velocity = checked(_face.run_add_velocity)
 _add_pressure = checked(_face.run_add_pressure)
+_add_contact = checked(_face.run_add_contact)
+_tag_surface = checked(_face.run_tag_surface)
 _set_motion = checked(_face.run_set_motion)
 _advance = checked(_face.run_advance)
 _clock = checked(_face.run_clock)
@@ -26,6 +28,8 @@ _energy = checked(_face.run_energy)
 _loads = checked(_face.run_loads)
 _elements = checked(_face.run_elements)
 _nodes = checked(_face.run_nodes)
+_contact_forces = checked(_face.run_contact_forces)
+_contact_statistics = checked(_face.run_contact_statistics)
 _checkpoint_size = checked(_face.run_checkpoint_size)
 _save = checked(_face.run_save)
 _restore = checked(_face.run_restore)
@@ -46,11 +50,30 @@ class Energy:
     damping: float
     residual: float
     initial: float
+    contact: float  # work of contact pressure
+    friction: float  # work of friction, <= 0
 
     @property
     def internal(self) -> float:
         """Elastic energy and what the material has dissipated [J]."""
         return self.elastic + self.compressive + self.fracture
+
+
+@dataclass(frozen=True)
+class ContactStatistics:
+    """What contact has cost and how exact it was, since the start."""
+
+    pairs_max: int
+    steps: int  # with at least one pair
+    sweeps: int
+    unconverged_steps: int
+    lists: int  # times that the list of candidates was made
+    max_penetration_over_h: float  # h: shortest boundary edge
+
+    @property
+    def sweeps_mean(self) -> float:
+        """Sweeps in a step with contact."""
+        return self.sweeps / self.steps if self.steps else 0.0
 
 
 @dataclass(frozen=True)
@@ -103,6 +126,17 @@ class Run:
                 load.ramp.start,
                 load.ramp.duration,
             )
+        if problem.contact is not None:
+            self._add_contact(problem.contact, problem.mesh)
+
+    def _add_contact(self, contact: Contact, mesh: Mesh) -> None:
+        try:
+            names, friction = contact.surfaces(mesh), contact.table(mesh)
+        except ValueError as error:
+            raise CoreError(str(error)) from None
+        _add_contact(self._handle, friction)
+        for tag in range(len(mesh.body_names), len(names)):
+            _tag_surface(self._handle, (mesh.edge_sets[names[tag]] + 1).T, tag + 1)
 
     def __del__(self) -> None:
         if getattr(self, "_handle", 0):
@@ -153,6 +187,15 @@ class Run:
         """Displacement (n, 2) [m], velocity (n, 2) [m/s] of the half step after, mass (n,) [kg]."""
         displacement, velocity, mass = _nodes(self._handle, len(self.problem.mesh.nodes))
         return displacement.T, velocity.T, mass
+
+    def contact_forces(self) -> np.ndarray:
+        """Contact force on every node [N], (n, 2), at the time of the fields."""
+        return _contact_forces(self._handle, len(self.problem.mesh.nodes)).T
+
+    def contact_statistics(self) -> ContactStatistics:
+        """Pairs, sweeps and penetration since the start."""
+        counts, penetration = _contact_statistics(self._handle)
+        return ContactStatistics(*map(int, counts), float(penetration))
 
     def save(self) -> np.ndarray:
         """The state to the bit, as one array of numbers."""

@@ -14,6 +14,7 @@ import numpy as np
 
 from lithofrac import _core
 from lithofrac.errors import checked
+from lithofrac.problem import Mesh
 
 _face = _core.kernels_material
 _principal_axes = checked(_face.principal_axes)
@@ -34,6 +35,35 @@ element_path = checked(_core.kernels_mechanics.element_path)
 
 bare_elastic = checked(_core.kernels_mechanics.bare_elastic)
 """Positions after bare elastic steps of a free body: the yardstick of the benchmark."""
+
+pair_impulse = checked(_core.kernels_contact.pair_impulse)
+"""Impulse (2,) of a contact pair: (velocity, normals (2, n), biases (n,), friction, compliance)."""
+
+corner_kind = checked(_core.kernels_contact.corner_kind)
+"""(kind, faces, neighbours) of two wedges at one place, from unit tangents (2, 4): into and out
+of each."""
+
+_boundary_of = checked(_core.kernels_contact.boundary_of)
+_candidates_of = checked(_core.kernels_contact.candidates_of)
+
+CORNER_KINDS = ("none", "any", "both", "flat")
+"""Meaning of the kind that `corner_kind` gives."""
+
+
+def boundary_of(mesh: Mesh) -> tuple[np.ndarray, float]:
+    """Next node along the boundary for every node, -1 off it, and the shortest edge [m]."""
+    following, shortest = _boundary_of(mesh.nodes.T, mesh.triangles.T + 1)
+    return following - 1, shortest
+
+
+def contact_candidates(mesh: Mesh, displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Corners (node, node) and pairs (node, start of edge) that the search keeps, (k, 2) each."""
+    arrays = mesh.nodes.T, displacement.T, mesh.triangles.T + 1
+    counts, _ = _candidates_of(*arrays, 1)
+    _, pairs = _candidates_of(*arrays, max(1, sum(counts)))
+    pairs = pairs.T - 1
+    return pairs[: counts[0]], pairs[counts[0] : sum(counts)]
+
 
 ACTIVE_PLANES = (
     "T1", "T2", "T3", "M12", "M13", "M21", "M23", "M31", "M32", "apex", "mixture", "cut",

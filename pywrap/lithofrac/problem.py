@@ -118,6 +118,46 @@ class Damping:
 
 
 @dataclass(frozen=True)
+class Contact:
+    """Non-penetration with Coulomb friction on the whole boundary, self contact included.
+
+    friction : (surface, surface) -> coefficient, in either order; a surface is a body or an edge
+        set of the mesh, and an edge set that is named here is a surface of its own
+    default_friction : where the table says nothing
+    """
+
+    friction: dict[tuple[str, str], float] = field(default_factory=dict)
+    default_friction: float = 0.0
+
+    def surfaces(self, mesh: Mesh) -> list[str]:
+        """Names of the surfaces: all bodies, then the edge sets that the table names.
+
+        Raises
+        ------
+        ValueError
+            Where the table names neither a body nor an edge set, or says two things of a pair.
+        """
+        names = list(mesh.body_names)
+        for name in dict.fromkeys(name for pair in self.friction for name in pair):
+            if name not in mesh.body_names and name not in mesh.edge_sets:
+                raise ValueError(f"contact: {name!r} is neither a body nor an edge set of the mesh")
+            if name not in names:
+                names.append(name)
+        return names
+
+    def table(self, mesh: Mesh) -> np.ndarray:
+        """Friction by surface, (n, n), symmetric; order of `surfaces`."""
+        names = self.surfaces(mesh)
+        table = np.full((len(names), len(names)), self.default_friction)
+        for (a, b), friction in self.friction.items():
+            if friction != self.friction.get((b, a), friction):
+                raise ValueError(f"contact: the friction of {a!r} and {b!r} is given twice")
+            i, j = names.index(a), names.index(b)
+            table[i, j] = table[j, i] = friction
+        return table
+
+
+@dataclass(frozen=True)
 class Measures:
     """How axial stress and strain of a specimen follow from the boundary records.
 
@@ -144,6 +184,7 @@ class Problem:
     pressure_loads: tuple[PressureLoad, ...]
     end_time: float  # [s]
     damping: Damping = Damping()
+    contact: Contact | None = None  # None: parts pass through each other
     time_step_factor: float = 0.9  # of the exact element limit
     probes: dict[str, int] = field(default_factory=dict)  # name -> element index
     measures: Measures | None = None

@@ -53,6 +53,7 @@ def plan(problem: Problem) -> dict:
             "Mohr-Coulomb planes": any(m.options[3] and m.options[2] for m in problem.materials),
             "damping": problem.damping.fraction > 0.0 or bool(problem.damping.alpha),
             "pressure": bool(problem.pressure_loads),
+            "contact": problem.contact is not None,
             "probes": bool(problem.probes),
             "field output": problem.fields > 0,
         },
@@ -217,6 +218,7 @@ class _Session:
     def _summary(self, status: str, message: str, history, energy) -> dict:
         run, elements = self.run, len(self.problem.mesh.triangles)
         core, last = self.core_seconds, energy.iloc[-1]
+        contact = run.contact_statistics()
         return {
             "status": status,
             "message": message,
@@ -238,13 +240,13 @@ class _Session:
                 -energy["damping_J"].iloc[-1], energy["external_J"].iloc[-1]
             ),
             "max_plastic_strain": _finite(run.elements(np.arange(elements)).plastic_strain.max()),
-            # without contact and crack insertion these are zero by construction
+            # without crack insertion these are zero by construction
             "cracks": 0,
             "fragments": 0,
-            "max_penetration_over_h": 0.0,
-            "contact_pairs_max": 0,
-            "contact_sweeps_mean": 0.0,
-            "contact_unconverged_steps": 0,
+            "max_penetration_over_h": contact.max_penetration_over_h,
+            "contact_pairs_max": contact.pairs_max,
+            "contact_sweeps_mean": contact.sweeps_mean,
+            "contact_unconverged_steps": contact.unconverged_steps,
             "notes": self.notes,
         }
 

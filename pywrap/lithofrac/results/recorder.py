@@ -7,7 +7,16 @@ import pandas as pd
 
 from lithofrac.core import Run
 
-ENERGY = ("kinetic", "elastic", "compressive", "fracture", "external", "damping")
+ENERGY = (
+    "kinetic",
+    "elastic",
+    "compressive",
+    "fracture",
+    "external",
+    "damping",
+    "contact",
+    "friction",
+)
 ENERGY_COLUMNS = [
     "time_s",
     "kinetic_J",
@@ -16,6 +25,8 @@ ENERGY_COLUMNS = [
     "fracture_dissipation_J",
     "external_J",
     "damping_J",
+    "contact_J",
+    "friction_J",
     "residual_J",
     "residual_relative",
 ]

@@ -1,0 +1,206 @@
+!> What contact remembers between steps: boundary, list of candidates, impulses, statistics.
+!>
+!> This module knows boundary nodes only; `run` brings their motion.
+module lithofrac_contact_contact
+   use lithofrac_base_kinds, only: wp
+   use lithofrac_base_status, only: bad_input, ok, set_failure, status_type
+   use lithofrac_contact_corners, only: classify
+   use lithofrac_contact_pairs, only: pair_type
+   use lithofrac_contact_search, only: candidates_type, list_candidates
+   use lithofrac_contact_surfaces, only: new_surfaces, surfaces_type
+   use lithofrac_mesh_mesh, only: mesh_type
+   implicit none
+   private
+
+   public :: contact_type, new_contact, prepare_list, renew_list, statistics_type, turn_corners
+
+   real(wp), parameter :: rotated = 1.0e-6_wp      !! squared turn that asks for new corners [rad2]
+
+   type :: statistics_type
+      integer :: pairs_max = 0
+      integer :: steps = 0                         !! with at least one pair
+      integer :: sweeps = 0
+      integer :: unconverged = 0                   !! steps
+      integer :: lists = 0                         !! times the list was made
+      real(wp) :: penetration = 0.0_wp             !! deepest, over h
+   end type statistics_type
+
+   type :: contact_type
+      logical :: on = .false.
+      type(surfaces_type) :: surfaces
+      real(wp), allocatable :: friction(:, :)      !! (n_tags, n_tags)
+      type(candidates_type) :: candidates
+      integer, allocatable :: kind(:)              !! (n_corners)
+      integer, allocatable :: face(:, :)           !! (2, n_corners)
+      logical, allocatable :: neighbours(:)        !! (n_corners) nothing stands between
+      real(wp), allocatable :: corner_friction(:)  !! (n_corners)
+      real(wp), allocatable :: edge_friction(:)    !! (n_edges)
+      real(wp), allocatable :: tangent(:, :)       !! (2, n) edges when corners were classified
+      real(wp), allocatable :: corner_impulse(:, :)  !! (2, n_corners) normal, tangential [N s]
+      real(wp), allocatable :: edge_impulse(:, :)  !! (2, n_edges)
+      type(pair_type), allocatable :: pairs(:)     !! room for every candidate
+      integer :: n_pairs = 0
+      real(wp), allocatable :: inverse_mass(:, :)  !! (2, n) [1/kg]
+      real(wp), allocatable :: before(:, :)        !! (2, n) velocity at the half step before [m/s]
+      real(wp), allocatable :: v(:, :)             !! (2, n) and after it [m/s]
+      real(wp), allocatable :: impulse(:, :)       !! (2, n) sum on the node [N s]
+      real(wp) :: work_before(2) = 0.0_wp          !! normal, friction: half step before [J]
+      real(wp) :: work_after(2) = 0.0_wp           !! and after [J]
+      real(wp) :: fastest = 0.0_wp                 !! relative velocity of a pair in this step [m/s]
+      real(wp) :: deepest = 0.0_wp                 !! penetration of a pair in this step [m]
+      type(statistics_type) :: statistics
+   end type contact_type
+
+contains
+
+   !> Prepare the boundary of a mesh for contact.
+   subroutine new_contact(contact, mesh, friction, status)
+      type(contact_type), intent(out) :: contact
+      type(mesh_type), intent(in) :: mesh
+      real(wp), intent(in) :: friction(:, :)   !! by surface tag; bodies are the first tags
+      type(status_type), intent(out) :: status
+
+      if (size(friction, 1) < mesh%n_bodies) then
+         call set_failure(status, bad_input, "contact: a body has no friction")
+      else if (.not. all(friction >= 0.0_wp .and. friction <= huge(1.0_wp))) then
+         call set_failure(status, bad_input, "contact: friction is a finite number >= 0")
+      else if (any(abs(friction - transpose(friction)) > 0.0_wp)) then
+         call set_failure(status, bad_input, "contact: friction must be symmetric")
+      end if
+      if (status%code /= ok) return
+      call new_surfaces(contact%surfaces, mesh, status)
+      if (status%code /= ok) return
+      contact%friction = friction
+      associate (n => contact%surfaces%n)
+         allocate (contact%inverse_mass(2, n), contact%before(2, n), source=0.0_wp)
+         allocate (contact%v(2, n), contact%impulse(2, n), source=0.0_wp)
+      end associate
+      contact%tangent = contact%surfaces%tangent
+      contact%candidates%u = contact%surfaces%u
+      contact%on = .true.
+   end subroutine new_contact
+
+   !> A new list of candidates; impulses go along.
+   subroutine renew_list(contact)
+      type(contact_type), intent(inout) :: contact
+
+      type(candidates_type) :: old
+      real(wp), allocatable :: corner_impulse(:, :), edge_impulse(:, :)
+
+      call move_alloc(contact%candidates%corner, old%corner)
+      call move_alloc(contact%candidates%edge, old%edge)
+      if (allocated(old%corner)) then
+         call move_alloc(contact%corner_impulse, corner_impulse)
+         call move_alloc(contact%edge_impulse, edge_impulse)
+      end if
+      contact%tangent = contact%surfaces%tangent
+      call prepare_list(contact)
+      if (allocated(old%corner)) then
+         call carry_over(old%corner, corner_impulse, contact%candidates%corner, &
+            contact%corner_impulse)
+         call carry_over(old%edge, edge_impulse, contact%candidates%edge, contact%edge_impulse)
+      end if
+      contact%statistics%lists = contact%statistics%lists + 1
+   end subroutine renew_list
+
+   !> List for `surfaces%u` with corners for `tangent`: all that is not saved in a checkpoint.
+   subroutine prepare_list(contact)
+      type(contact_type), intent(inout) :: contact
+
+      integer :: n_corners, n_edges, i
+
+      call list_candidates(contact%candidates, contact%surfaces)
+      n_corners = size(contact%candidates%corner, 2)
+      n_edges = size(contact%candidates%edge, 2)
+      if (allocated(contact%kind)) then
+         deallocate (contact%kind, contact%face, contact%pairs)
+         deallocate (contact%neighbours, contact%corner_friction, contact%edge_friction)
+      end if
+      allocate (contact%kind(n_corners), contact%face(2, n_corners))
+      allocate (contact%neighbours(n_corners))
+      allocate (contact%corner_friction(n_corners), contact%edge_friction(n_edges))
+      allocate (contact%pairs(n_corners + n_edges + 1))
+      contact%corner_impulse = spread([0.0_wp, 0.0_wp], 2, n_corners)
+      contact%edge_impulse = spread([0.0_wp, 0.0_wp], 2, n_edges)
+      associate (list => contact%candidates, prev => contact%surfaces%prev)
+         do i = 1, n_corners
+            call classify_corner(contact, i)
+            contact%corner_friction(i) = friction_of(contact, [prev(list%corner(1, i)), &
+               list%corner(1, i)], [prev(list%corner(2, i)), list%corner(2, i)])
+         end do
+         do i = 1, n_edges
+            contact%edge_friction(i) = friction_of(contact, [prev(list%edge(1, i)), &
+               list%edge(1, i)], [list%edge(2, i)])
+         end do
+      end associate
+   end subroutine prepare_list
+
+   !> Copy the values of pairs that are in both lists; both are sorted.
+   pure subroutine carry_over(old_pair, old_value, new_pair, new_value)
+      integer, intent(in) :: old_pair(:, :)
+      real(wp), intent(in) :: old_value(:, :)
+      integer, intent(in) :: new_pair(:, :)
+      real(wp), intent(inout) :: new_value(:, :)
+
+      integer :: i, k
+
+      k = 1
+      do i = 1, size(new_pair, 2)
+         do while (k <= size(old_pair, 2))
+            if (old_pair(1, k) > new_pair(1, i)) exit
+            if (old_pair(1, k) == new_pair(1, i) .and. old_pair(2, k) >= new_pair(2, i)) exit
+            k = k + 1
+         end do
+         if (k > size(old_pair, 2)) exit
+         if (all(old_pair(:, k) == new_pair(:, i))) new_value(:, i) = old_value(:, k)
+      end do
+   end subroutine carry_over
+
+   pure subroutine classify_corner(contact, i)
+      type(contact_type), intent(inout) :: contact
+      integer, intent(in) :: i
+
+      associate (first => contact%candidates%corner(1, i), t => contact%tangent, &
+            second => contact%candidates%corner(2, i), prev => contact%surfaces%prev)
+         call classify(t(:, prev(first)), t(:, first), t(:, prev(second)), t(:, second), &
+            contact%kind(i), contact%face(:, i), contact%neighbours(i))
+      end associate
+   end subroutine classify_corner
+
+   !> Classify corners again where an edge has turned since the last time.
+   pure subroutine turn_corners(contact)
+      type(contact_type), intent(inout) :: contact
+
+      logical :: turned(contact%surfaces%n)
+      integer :: i
+
+      associate (t => contact%surfaces%tangent, old => contact%tangent)
+         do i = 1, contact%surfaces%n
+            turned(i) = (t(1, i) - old(1, i))**2 + (t(2, i) - old(2, i))**2 > rotated
+         end do
+         if (.not. any(turned)) return
+         do i = 1, contact%surfaces%n
+            if (turned(i)) old(:, i) = t(:, i)
+         end do
+      end associate
+      associate (corner => contact%candidates%corner, prev => contact%surfaces%prev)
+         do i = 1, size(corner, 2)
+            if (any(turned(corner(:, i))) .or. any(turned(prev(corner(:, i))))) then
+               call classify_corner(contact, i)
+            end if
+         end do
+      end associate
+   end subroutine turn_corners
+
+   !> Choice: where faces of different friction meet in a corner, the largest holds.
+   pure function friction_of(contact, first, second) result(friction)
+      type(contact_type), intent(in) :: contact
+      integer, intent(in) :: first(:)    !! edges at the one side
+      integer, intent(in) :: second(:)   !! and at the other
+      real(wp) :: friction
+
+      friction = maxval(contact%friction(contact%surfaces%tag(first), &
+         contact%surfaces%tag(second)))
+   end function friction_of
+
+end module lithofrac_contact_contact

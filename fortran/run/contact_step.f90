@@ -1,0 +1,139 @@
+!> Contact within a step of the run: motion in, corrected velocities and sums out.
+!>
+!> The node update has predicted velocities without contact. The correction also reaches what
+!> the update has summed on its way: kinetic energy, power of the damping, moments.
+module lithofrac_run_contact_step
+   use lithofrac_base_kinds, only: wp
+   use lithofrac_base_status, only: bad_contact, set_failure, status_type
+   use lithofrac_contact_solve, only: prescribed_collision, solve_contact, solved, too_fast
+   use lithofrac_run_model, only: model_type
+   use lithofrac_run_node_update, only: n_sums
+   use lithofrac_run_settings, only: no_damping, relative_to_affine
+   implicit none
+   private
+
+   public :: bring_masses, book_contact, close_contacts, note_velocities
+
+contains
+
+   !> Masses of the boundary nodes, once no load will change any more.
+   subroutine bring_masses(model)
+      type(model_type), intent(inout) :: model
+
+      associate (contact => model%contact)
+         contact%inverse_mass = model%fields%inverse_mass(:, contact%surfaces%node)
+      end associate
+   end subroutine bring_masses
+
+   !> Keep the velocities of the half step that ends.
+   pure subroutine note_velocities(model)
+      type(model_type), intent(inout) :: model
+
+      integer :: i
+
+      associate (contact => model%contact)
+         do i = 1, contact%surfaces%n
+            contact%before(:, i) = model%fields%v(:, contact%surfaces%node(i))
+         end do
+      end associate
+   end subroutine note_velocities
+
+   !> Add the contact impulses of this step to the predicted velocities.
+   subroutine close_contacts(model, status)
+      type(model_type), intent(inout) :: model
+      type(status_type), intent(out) :: status
+
+      integer :: i, code, pair(2)
+      real(wp) :: sums(n_sums)
+
+      associate (contact => model%contact, fields => model%fields)
+         do i = 1, contact%surfaces%n
+            associate (node => contact%surfaces%node(i))
+               contact%surfaces%u(:, i) = fields%u(:, node)
+               contact%v(:, i) = fields%v(:, node)
+            end associate
+         end do
+         call solve_contact(contact, model%dt, model%critical, code, pair)
+         if (code /= solved) then
+            call explain(model, code, contact%surfaces%node(pair), status)
+            return
+         end if
+         sums = 0.0_wp
+         do i = 1, contact%surfaces%n
+            associate (node => contact%surfaces%node(i))
+               fields%contact(:, node) = contact%impulse(:, i)/model%dt
+               if (.not. maxval(abs(contact%impulse(:, i))) > 0.0_wp) cycle
+               call correct_sums(model, node, contact%before(:, i), &
+                  contact%v(:, i) - fields%v(:, node), sums)
+               fields%v(:, node) = contact%v(:, i)
+            end associate
+         end do
+         model%sums(:, model%blocks%n_runs + 1) = sums
+      end associate
+   end subroutine close_contacts
+
+   !> What a change of velocity adds to kinetic energy and to the power of the damping.
+   pure subroutine correct_sums(model, node, before, change, sums)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: node
+      real(wp), intent(in) :: before(2)      !! velocity of the half step before [m/s]
+      real(wp), intent(in) :: change(2)      !! of the velocity after [m/s]
+      real(wp), intent(inout) :: sums(n_sums)
+
+      real(wp) :: arm(2), drag(2), slip(2)
+
+      associate (body => model%mesh%body_of_node(node), fields => model%fields)
+         sums(1) = sums(1) &
+            + 0.5_wp*fields%mass(node)*(before(1)*change(1) + before(2)*change(2))
+         if (model%settings%damping == no_damping) return
+         if (model%settings%damping == relative_to_affine) then
+            associate (fit => model%affine(body))
+               arm = model%mesh%nodes(:, node) + fields%u(:, node) - fit%centre
+               slip = before - fit%velocity - fit%gradient(:, 1)*arm(1) - fit%gradient(:, 2)*arm(2)
+            end associate
+         else
+            slip = 0.5_wp*(before + fields%v(:, node))
+         end if
+         drag = -model%alpha(body)*fields%free_mass(:, node)*slip
+         sums(3) = sums(3) + drag(1)*change(1) + drag(2)*change(2)
+      end associate
+   end subroutine correct_sums
+
+   !> Work of the impulses of the step that ends, half of it on either side of its time.
+   pure subroutine book_contact(model)
+      type(model_type), intent(inout) :: model
+
+      real(wp) :: work(2)
+
+      associate (contact => model%contact)
+         work = contact%work_after
+         if (model%step > 0) work = work + contact%work_before
+      end associate
+      model%ledger%contact = model%ledger%contact + work(1)
+      model%ledger%friction = model%ledger%friction + work(2)
+   end subroutine book_contact
+
+   subroutine explain(model, code, node, status)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: code
+      integer, intent(in) :: node(2)
+      type(status_type), intent(out) :: status
+
+      character(len=240) :: words
+      character(len=:), allocatable :: what
+
+      select case (code)
+      case (prescribed_collision)
+         what = "contact: their prescribed motions collide"
+      case (too_fast)
+         what = "contact: they pass each other too fast for the step; " &
+            //"try a smaller time_step_factor or loading speed"
+      case default
+         what = "contact: a position is not finite; try a smaller time_step_factor or loading speed"
+      end select
+      write (words, "(a, i0, a, es11.4, a, i0, a, i0, 2a)") "step ", model%step, ", time ", &
+         model%step*model%dt, " s, nodes ", node(1), " and ", node(2), ": ", what
+      call set_failure(status, bad_contact, trim(words))
+   end subroutine explain
+
+end module lithofrac_run_contact_step
