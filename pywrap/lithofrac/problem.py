@@ -158,6 +158,27 @@ class Contact:
 
 
 @dataclass(frozen=True)
+class Fracture:
+    """Discrete cracks in the bodies that yield (Klerck 2004, section 2.5); needs contact.
+
+    mode : "inter_element", cracks follow edges of the mesh and the time step stays as it is, or
+        "intra_element", they cut elements where that leaves good ones
+    weights : of the non-local averages of eq. 22, "volume" or "failure_factor"
+    release_steps : steps over which the traction on a new crack fades; None: twice the way of a
+        shear wave along it, at least 20; 0: at once, as in the paper
+    reset : "normal", failed elements regain their tensile strength across the crack alone, or
+        "paper", all their state variables
+    interval : steps between two failure maps
+    """
+
+    mode: str = "inter_element"
+    weights: str = "volume"
+    release_steps: int | None = None
+    reset: str = "normal"
+    interval: int = 1
+
+
+@dataclass(frozen=True)
 class Measures:
     """How axial stress and strain of a specimen follow from the boundary records.
 
@@ -185,6 +206,7 @@ class Problem:
     end_time: float  # [s]
     damping: Damping = Damping()
     contact: Contact | None = None  # None: parts pass through each other
+    fracture: Fracture | None = None  # None: the continuum alone
     time_step_factor: float = 0.9  # of the exact element limit
     probes: dict[str, int] = field(default_factory=dict)  # name -> element index
     measures: Measures | None = None
