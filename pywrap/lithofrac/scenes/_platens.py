@@ -1,7 +1,8 @@
 """Platens: bodies of equal right-angled triangles beside the rock, and how they are held.
 
-Every platen is guided: its back moves along its own normal and nothing else, as in a stiff frame.
-Choice: so that no platen turns or slides off, whatever breaks in front of it.
+Choice: loading platens move along their normal and neither turn nor slide, as in a stiff machine.
+Lateral platens are pressed on from behind and may turn; only the middle of their back is held, so
+that friction does not carry them off.
 """
 
 from dataclasses import replace
@@ -70,9 +71,12 @@ def pushed(
 
 
 def guided(mesh: Mesh, side: str) -> VelocityLoad:
-    """Hold the back of a platen across its normal."""
+    """Hold the middle of the back of a platen across its normal; steel may spread from there."""
+    across = 1 - SIDES[side][0]
     nodes = np.unique(back_of(mesh, side)).astype(np.int32)
-    return VelocityLoad(f"{side}_guide", nodes, 1 - SIDES[side][0])
+    along = mesh.nodes[nodes, across]
+    middle = np.argmin(np.abs(along - (along.min() + along.max()) / 2))
+    return VelocityLoad(f"{side}_guide", nodes[middle : middle + 1], across)
 
 
 def bodies_of(surface: str, mesh: Mesh) -> list[str]:
