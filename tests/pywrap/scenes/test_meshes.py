@@ -23,15 +23,15 @@ SCENES = [
     "kirsch",
     "bar_wave",
 ]
-ARC = np.radians(10.0)
+ARC = np.radians(6.0)
 AREA_mm2 = {
     "single_element_sandstone": 0.125,
     "sandstone_triaxial_p00": 5 * 15,
     "sandstone_plane_strain_k02_p00": 10 * 30,
     "sandstone_soft_p00": 10 * 30 + 2 * 14 * 5,
     "sandstone_plane_strain_p00": 10 * 30 + 2 * 9.9 * 10 + 2 * 30 * 10,
-    "punch_gf60": 80 * 80 + 10 * 1 + 20 * 10 + 2 * 80 * 10,
-    # without the segments beyond the flats of 10 degrees, with the platens
+    "punch_gf60": 80 * 80 + 10 * 1 + 12 * 10 + 2 * 80 * 10,
+    # without the segments beyond the flats of 6 degrees, with the platens
     "brazilian": 20**2 * (np.pi - ARC + np.sin(ARC)) + 2 * (40 * np.sin(ARC / 2) + 6) * 5,
     "kirsch": 100**2 - np.pi * 25**2 / 4,
     "bar_wave": 5 * 100,
