@@ -23,7 +23,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
         ("6b", "tension alone", [run for run in runs if not run.rock.compression]),
     ]
     panels = [panel for panel in panels if panel[2]]
-    drawn, axes = style.new_figure(1, len(panels), height=3.6)
+    drawn, axes = style.new_figure(1, len(panels), height=4.2)
     for panel, (number, title, own) in zip(axes[0], panels, strict=True):
         draw_runs(panel, own)
         curves = load_curves(data, number)
@@ -32,7 +32,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
         panel.set(title=title, xlabel="axial strain [%]", ylabel="punch stress [MPa]")
         panel.set_xlim(0, None)
         panel.set_ylim(0, 1.45 * panel.get_ylim()[1])  # room for the legend
-        panel.legend(loc="upper left")
+        panel.legend(loc="upper left", title="run, Gf: first peak", alignment="left")
         if not any(curve.sheet.origin == "experiment" for curve in curves):
             style.badge(panel, NOT_DIGITISED)
     return drawn
@@ -53,7 +53,6 @@ def draw_runs(axes: Axes, runs: list[Run]) -> None:
 
 def _draw(axes: Axes, run: Run, colour, dash: str, kind: str) -> None:
     draw_curve(axes, run, colour, dash)
-    words = f"{kind}, Gf = {run.rock.fracture_energy:g} J/m²"
-    if run.peak:
-        words += f", first peak {run.peak.stress:.0f} MPa"
+    peak = f"{run.peak.stress:.0f} MPa" if run.peak else "no peak"
+    words = f"{kind}, {run.rock.fracture_energy:g} J/m²: {peak}"
     axes.plot([], [], dash, color=colour, label=words)

@@ -17,7 +17,7 @@ from lithofrac.plots import style
 TITLES = {
     ("triaxial", False): "triaxial, soft pressure",
     ("plane_strain", False): "plane strain, soft pressure",
-    ("plane_strain", True): "plane strain, stiff lateral spring",
+    ("plane_strain", True): "plane strain, stiff sides",
 }  # test, and whether its lateral faces are stiff
 DEFAULT_STIFFNESS = 0.02  # over Young's modulus: the calibrated value of the plane strain series
 SOFT = (
