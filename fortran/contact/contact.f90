@@ -12,7 +12,8 @@ module lithofrac_contact_contact
    implicit none
    private
 
-   public :: contact_type, new_contact, prepare_list, renew_list, statistics_type, turn_corners
+   public :: contact_type, new_contact, prepare_list, renew_list, resize_motion, statistics_type
+   public :: turn_corners
 
    real(wp), parameter :: rotated = 1.0e-6_wp      !! squared turn that asks for new corners [rad2]
 
@@ -71,14 +72,21 @@ contains
       call new_surfaces(contact%surfaces, mesh, status)
       if (status%code /= ok) return
       contact%friction = friction
-      associate (n => contact%surfaces%n)
-         allocate (contact%inverse_mass(2, n), contact%before(2, n), source=0.0_wp)
-         allocate (contact%v(2, n), contact%impulse(2, n), source=0.0_wp)
-      end associate
-      contact%tangent = contact%surfaces%tangent
-      contact%candidates%u = contact%surfaces%u
+      call resize_motion(contact)
       contact%on = .true.
    end subroutine new_contact
+
+   !> Room for the motion of every boundary node; nothing is kept.
+   subroutine resize_motion(contact)
+      type(contact_type), intent(inout) :: contact
+
+      contact%before = spread([0.0_wp, 0.0_wp], 2, contact%surfaces%n)
+      contact%inverse_mass = contact%before
+      contact%v = contact%before
+      contact%impulse = contact%before
+      contact%tangent = contact%surfaces%tangent
+      contact%candidates%u = contact%surfaces%u
+   end subroutine resize_motion
 
    !> A new list of candidates; impulses go along.
    subroutine renew_list(contact)

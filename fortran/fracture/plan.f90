@@ -16,7 +16,10 @@ module lithofrac_fracture_plan
    implicit none
    private
 
-   public :: crack_type, plan_cracks, rules_type
+   public :: crack_type, plan_cracks, rules_type, worth_another_look
+
+   !> A node without a way for a crack is looked at again when F_p has grown by this factor.
+   real(wp), parameter :: worth_another_look = 1.05_wp
 
    !> How cracks are planned.
    type :: rules_type
@@ -38,12 +41,14 @@ contains
    !> Plan cracks at nodes with F_p >= 1, in the order (-F_p, node).
    !>
    !> A mean reaches 1 only where an element does, so other nodes are not looked at.
-   pure subroutine plan_cracks(mesh, topology, factor, normal, rules, cracks, n_waiting, n_closed)
+   pure subroutine plan_cracks(mesh, topology, factor, normal, rules, retry, cracks, n_waiting, &
+         n_closed)
       type(mesh_type), intent(in) :: mesh
       type(topology_type), intent(in) :: topology
       real(wp), intent(in) :: factor(:)            !! (>= n_elements) F_k [-]
       real(wp), intent(in) :: normal(:, :)         !! (2, >= n_elements) as in `failure_map`
       type(rules_type), intent(in) :: rules
+      real(wp), intent(inout) :: retry(:)          !! (n_nodes) F_p below which a node is left alone
       type(crack_type), allocatable, intent(out) :: cracks(:)
       integer, intent(out) :: n_waiting            !! failed nodes put off by a lock or the limit
       integer, intent(out) :: n_closed             !! of those looked at, with no way for a crack
@@ -58,7 +63,7 @@ contains
 
       n_closed = 0
       n = 0
-      call find_failed(mesh, topology, factor, normal, rules%weights, nodes, failures)
+      call find_failed(mesh, topology, factor, normal, rules%weights, retry, nodes, failures)
       allocate (planned(min(size(nodes), rules%most_cracks)))
       allocate (locked(merge(mesh%n_elements, 0, size(nodes) > 0)), source=.false.)
       order = descending(failures%factor)
@@ -69,6 +74,7 @@ contains
             call choose_arms(mesh, topology, fan, failure%along, rules%mode, rules%guard, arms)
             if (size(arms) == 0) then
                n_closed = n_closed + 1
+               retry(node) = worth_another_look*failure%factor
             else if (.not. any(locked(touched_elements(topology, fan, arms)))) then
                locked(touched_elements(topology, fan, arms)) = .true.
                n = n + 1
@@ -81,12 +87,13 @@ contains
    end subroutine plan_cracks
 
    !> Nodes with F_p >= 1, ascending, and what failed there.
-   pure subroutine find_failed(mesh, topology, factor, normal, weights, nodes, failures)
+   pure subroutine find_failed(mesh, topology, factor, normal, weights, retry, nodes, failures)
       type(mesh_type), intent(in) :: mesh
       type(topology_type), intent(in) :: topology
       real(wp), intent(in) :: factor(:)
       real(wp), intent(in) :: normal(:, :)
       integer, intent(in) :: weights
+      real(wp), intent(in) :: retry(:)
       integer, allocatable, intent(out) :: nodes(:)
       type(nodal_failure_type), allocatable, intent(out) :: failures(:)
 
@@ -106,6 +113,7 @@ contains
          if (.not. near(node)) cycle
          call average_at_node(mesh, topology, node, factor, normal, weights, fan, failure)
          if (.not. (failure%factor >= 1.0_wp .and. failure%agreement > 0.0_wp)) cycle
+         if (failure%factor < retry(node)) cycle
          n = n + 1
          nodes(n) = node
          failures(n) = failure

@@ -1,10 +1,11 @@
 !> Fixed partition of chunks and nodes, so that sums never depend on the number of threads.
 !>
-!> Each block of chunks adds its element forces to its own buffer, which covers the range of
-!> node numbers that the block uses. A node then sums over the buffers in order of blocks.
+!> Each block of chunks adds its element forces to its own buffer, which has one place for every
+!> node that the block uses, in order of nodes. A node then sums over the buffers in order of
+!> blocks. Nodes that cracks have added are as cheap as any: numbers need not be near each other.
 module lithofrac_mechanics_blocks
    use lithofrac_base_kinds, only: wp
-   use lithofrac_mechanics_chunks, only: chunks_type
+   use lithofrac_mechanics_chunks, only: chunks_type, width
    use lithofrac_mesh_mesh, only: mesh_type
    implicit none
    private
@@ -16,13 +17,14 @@ module lithofrac_mechanics_blocks
    type :: blocks_type
       integer :: n_blocks = 0                    !! blocks of chunks
       integer, allocatable :: first_chunk(:)     !! (n_blocks + 1)
-      integer, allocatable :: low(:), high(:)    !! (n_blocks) range of node numbers
-      integer, allocatable :: offset(:)          !! (n_blocks) where a buffer starts, minus 1
-      real(wp), allocatable :: buffer(:, :)      !! (2, sum of ranges) element forces [N]
+      integer, allocatable :: first_place(:)     !! (n_blocks + 1) places of a block
+      integer, allocatable :: node(:)            !! (places) ascending within a block
+      integer, allocatable :: place(:, :, :)     !! (width, 3, n_chunks) place of a corner
+      real(wp), allocatable :: buffer(:, :)      !! (2, places) element forces [N]
       integer :: n_runs = 0                      !! runs of nodes of one body
       integer, allocatable :: first_node(:)      !! (n_runs + 1)
       integer, allocatable :: first_source(:)    !! (n_runs + 1) into `source`
-      integer, allocatable :: source(:)          !! blocks that reach into a run, ascending
+      integer, allocatable :: source(:, :)       !! (2, n) first and last place, by block
    end type blocks_type
 
 contains
@@ -33,29 +35,66 @@ contains
       type(chunks_type), intent(in) :: chunks
       type(mesh_type), intent(in) :: mesh
 
-      integer :: block
+      integer :: block, n
+      integer :: node(3*width*chunks%n_chunks), last_use(mesh%n_nodes), place_of(mesh%n_nodes)
 
       blocks%n_blocks = min(chunks%n_chunks, max(8, chunks%n_chunks/32))
-      allocate (blocks%first_chunk(blocks%n_blocks + 1))
+      allocate (blocks%first_chunk(blocks%n_blocks + 1), blocks%first_place(blocks%n_blocks + 1))
+      allocate (blocks%place(width, 3, chunks%n_chunks))
       do block = 0, blocks%n_blocks
          blocks%first_chunk(block + 1) = 1 + (block*chunks%n_chunks)/blocks%n_blocks
       end do
-      allocate (blocks%low(blocks%n_blocks), blocks%high(blocks%n_blocks))
-      allocate (blocks%offset(blocks%n_blocks), source=0)
+      last_use = 0
+      n = 0
       do block = 1, blocks%n_blocks
-         associate (node => chunks%node(:, :, &
-               blocks%first_chunk(block):blocks%first_chunk(block + 1) - 1))
-            blocks%low(block) = minval(node)
-            blocks%high(block) = maxval(node)
-         end associate
-         if (block == 1) cycle
-         blocks%offset(block) = blocks%offset(block - 1) &
-            + blocks%high(block - 1) - blocks%low(block - 1) + 1
+         blocks%first_place(block) = n + 1
+         call list_nodes(blocks, block, chunks, last_use, place_of, node, n)
       end do
-      allocate (blocks%buffer(2, sum(blocks%high - blocks%low + 1)), source=0.0_wp)
+      blocks%first_place(blocks%n_blocks + 1) = n + 1
+      blocks%node = node(:n)
+      allocate (blocks%buffer(2, n), source=0.0_wp)
       call cut_runs(blocks, mesh)
       call find_sources(blocks)
    end subroutine new_blocks
+
+   !> Nodes of a block, ascending, behind the first `n`; and the places of its corners.
+   subroutine list_nodes(blocks, block, chunks, last_use, place_of, node, n)
+      type(blocks_type), intent(inout) :: blocks
+      integer, intent(in) :: block
+      type(chunks_type), intent(in) :: chunks
+      integer, intent(inout) :: last_use(:)   !! (n_nodes) last block that has used a node
+      integer, intent(inout) :: place_of(:)   !! (n_nodes) working space
+      integer, intent(inout) :: node(:)
+      integer, intent(inout) :: n
+
+      integer :: chunk, lane, k, i, low, high
+
+      low = huge(low)
+      high = 0
+      do chunk = blocks%first_chunk(block), blocks%first_chunk(block + 1) - 1
+         do k = 1, 3
+            do lane = 1, width
+               i = chunks%node(lane, k, chunk)
+               last_use(i) = block
+               low = min(low, i)
+               high = max(high, i)
+            end do
+         end do
+      end do
+      do i = low, high
+         if (last_use(i) /= block) cycle
+         n = n + 1
+         node(n) = i
+         place_of(i) = n
+      end do
+      do chunk = blocks%first_chunk(block), blocks%first_chunk(block + 1) - 1
+         do k = 1, 3
+            do lane = 1, width
+               blocks%place(lane, k, chunk) = place_of(chunks%node(lane, k, chunk))
+            end do
+         end do
+      end do
+   end subroutine list_nodes
 
    !> Runs of consecutive nodes of one body.
    subroutine cut_runs(blocks, mesh)
@@ -78,26 +117,32 @@ contains
       blocks%first_node = first(:blocks%n_runs + 1)
    end subroutine cut_runs
 
+   !> Places that reach into each run of nodes, in order of blocks.
    subroutine find_sources(blocks)
       type(blocks_type), intent(inout) :: blocks
 
-      integer :: run, block, n, pass
+      integer :: run, block, n, next(blocks%n_blocks), last(blocks%n_blocks)
 
       allocate (blocks%first_source(blocks%n_runs + 1))
-      do pass = 1, 2
-         n = 0
-         do run = 1, blocks%n_runs
-            blocks%first_source(run) = n + 1
-            do block = 1, blocks%n_blocks
-               if (blocks%high(block) < blocks%first_node(run)) cycle
-               if (blocks%low(block) >= blocks%first_node(run + 1)) cycle
-               n = n + 1
-               if (pass == 2) blocks%source(n) = block
+      allocate (blocks%source(2, blocks%n_runs*blocks%n_blocks))
+      next = blocks%first_place(:blocks%n_blocks)
+      n = 0
+      do run = 1, blocks%n_runs
+         blocks%first_source(run) = n + 1
+         do block = 1, blocks%n_blocks
+            last(block) = next(block) - 1
+            do while (last(block) < blocks%first_place(block + 1) - 1)
+               if (blocks%node(last(block) + 1) >= blocks%first_node(run + 1)) exit
+               last(block) = last(block) + 1
             end do
+            if (last(block) < next(block)) cycle
+            n = n + 1
+            blocks%source(:, n) = [next(block), last(block)]
+            next(block) = last(block) + 1
          end do
-         blocks%first_source(blocks%n_runs + 1) = n + 1
-         if (pass == 1) allocate (blocks%source(n))
       end do
+      blocks%first_source(blocks%n_runs + 1) = n + 1
+      blocks%source = blocks%source(:, :n)
    end subroutine find_sources
 
    !> Internal force of the nodes of one run, summed over blocks in their order.
@@ -106,19 +151,15 @@ contains
       integer, intent(in) :: run
       real(wp), intent(inout), contiguous :: force(:, :)  !! (2, n_nodes) [N]
 
-      integer :: i, low, high, node, shift
+      integer :: i, place, node
 
       force(:, blocks%first_node(run):blocks%first_node(run + 1) - 1) = 0.0_wp
       do i = blocks%first_source(run), blocks%first_source(run + 1) - 1
-         associate (block => blocks%source(i))
-            low = max(blocks%low(block), blocks%first_node(run))
-            high = min(blocks%high(block), blocks%first_node(run + 1) - 1)
-            shift = blocks%offset(block) - blocks%low(block) + 1
-            do node = low, high
-               force(1, node) = force(1, node) + blocks%buffer(1, node + shift)
-               force(2, node) = force(2, node) + blocks%buffer(2, node + shift)
-            end do
-         end associate
+         do place = blocks%source(1, i), blocks%source(2, i)
+            node = blocks%node(place)
+            force(1, node) = force(1, node) + blocks%buffer(1, place)
+            force(2, node) = force(2, node) + blocks%buffer(2, place)
+         end do
       end do
    end subroutine assemble
 

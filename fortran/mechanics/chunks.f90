@@ -8,7 +8,7 @@ module lithofrac_mechanics_chunks
    implicit none
    private
 
-   public :: chunks_type, new_chunks, width
+   public :: chunks_type, new_chunks, set_corners, width
 
    integer, parameter :: width = 128  !! elements in a chunk
 
@@ -30,23 +30,25 @@ module lithofrac_mechanics_chunks
 contains
 
    !> Lay out the elements of `mesh`, in order of bodies, keeping their order within a body.
-   subroutine new_chunks(chunks, mesh, axisymmetric)
+   subroutine new_chunks(chunks, mesh, axisymmetric, alive)
       type(chunks_type), intent(out) :: chunks
       type(mesh_type), intent(in) :: mesh
       logical, intent(in) :: axisymmetric   !! first coordinate is the radius
+      logical, intent(in) :: alive(:)       !! (>= n_elements) elements that were cut have no lane
 
-      integer :: body, element, chunk, lane
+      integer :: body, element, chunk, lane, n
 
       chunks%axisymmetric = axisymmetric
       do body = 1, mesh%n_bodies
-         chunks%n_chunks = chunks%n_chunks + (count(mesh%body == body) + width - 1)/width
+         n = count(alive(:mesh%n_elements) .and. mesh%body(:mesh%n_elements) == body)
+         chunks%n_chunks = chunks%n_chunks + (n + width - 1)/width
       end do
       call allocate_chunks(chunks, mesh%n_elements)
       chunk = 0
       do body = 1, mesh%n_bodies
          lane = width
          do element = 1, mesh%n_elements
-            if (mesh%body(element) /= body) cycle
+            if (mesh%body(element) /= body .or. .not. alive(element)) cycle
             if (lane == width) then
                chunk = chunk + 1
                lane = 0
@@ -71,7 +73,7 @@ contains
          allocate (chunks%hoop(width, merge(n, 0, chunks%axisymmetric)), source=0.0_wp)
          allocate (chunks%body(n), chunks%filled(n))
          allocate (chunks%element(width, n), source=0)
-         allocate (chunks%lane_of(n_elements), chunks%chunk_of(n_elements))
+         allocate (chunks%lane_of(n_elements), chunks%chunk_of(n_elements), source=0)
       end associate
    end subroutine allocate_chunks
 
@@ -102,5 +104,15 @@ contains
       chunks%lane_of(element) = lane
       chunks%chunk_of(element) = chunk
    end subroutine place
+
+   !> Take over the corners of an element that has been given copies of its nodes; a copy stands
+   !> where its node stood, so gradients and volume stay.
+   pure subroutine set_corners(chunks, mesh, element)
+      type(chunks_type), intent(inout) :: chunks
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element
+
+      chunks%node(chunks%lane_of(element), :, chunks%chunk_of(element)) = mesh%triangles(:, element)
+   end subroutine set_corners
 
 end module lithofrac_mechanics_chunks

@@ -10,7 +10,7 @@ module lithofrac_mechanics_fields
    implicit none
    private
 
-   public :: fields_type, inelastic_type, new_fields, new_inelastic
+   public :: fields_type, inelastic_type, move_inelastic, new_fields, new_inelastic
 
    !> Nodal fields.
    type :: fields_type
@@ -86,5 +86,34 @@ contains
          end associate
       end do
    end subroutine new_inelastic
+
+   !> State for a new layout of the elements; each has what `source` had in the old one.
+   subroutine move_inelastic(old, old_chunks, source, chunks, state)
+      type(inelastic_type), intent(in) :: old
+      type(chunks_type), intent(in) :: old_chunks
+      integer, intent(in) :: source(:)              !! (n_elements) an element of the old layout
+      type(chunks_type), intent(in) :: chunks
+      type(inelastic_type), intent(inout) :: state  !! virgin, of the new layout
+
+      integer :: chunk, lane, from, from_lane
+
+      do chunk = 1, chunks%n_chunks
+         do lane = 1, chunks%filled(chunk)
+            from = old_chunks%chunk_of(source(chunks%element(lane, chunk)))
+            from_lane = old_chunks%lane_of(source(chunks%element(lane, chunk)))
+            state%touched(chunk) = state%touched(chunk) .or. old%touched(from)
+            state%strain(lane, :, chunk) = old%strain(from_lane, :, from)
+            state%plastic_strain(lane, chunk) = old%plastic_strain(from_lane, from)
+            state%ft(lane, :, chunk) = old%ft(from_lane, :, from)
+            state%opening(lane, :, chunk) = old%opening(from_lane, :, from)
+            state%axis(lane, :, chunk) = old%axis(from_lane, :, from)
+            state%crack(lane, :, chunk) = old%crack(from_lane, :, from)
+            state%sin_phi(lane, chunk) = old%sin_phi(from_lane, from)
+            state%c_cos_phi(lane, chunk) = old%c_cos_phi(from_lane, from)
+            state%dissipated(lane, :, chunk) = old%dissipated(from_lane, :, from)
+            state%softening(lane, chunk) = old%softening(from_lane, from)
+         end do
+      end do
+   end subroutine move_inelastic
 
 end module lithofrac_mechanics_fields

@@ -14,7 +14,7 @@ module lithofrac_mechanics_internal_force
    implicit none
    private
 
-   public :: chunk_force, chunk_stress, failure_type
+   public :: chunk_force, chunk_stress, element_force, failure_type
 
    !> What went wrong in an element, for words where step and time are known.
    type :: failure_type
@@ -29,25 +29,26 @@ module lithofrac_mechanics_internal_force
 contains
 
    !> Update the material of a chunk and add its nodal forces to the buffer of its block.
-   subroutine chunk_force(chunks, chunk, rock, fields, dt, state, shift, buffer, failure)
+   subroutine chunk_force(chunks, chunk, rock, fields, dt, state, place, buffer, failure)
       type(chunks_type), intent(in) :: chunks
       integer, intent(in) :: chunk
       type(rock_type), intent(in) :: rock
       type(fields_type), intent(in) :: fields
       real(wp), intent(in) :: dt                           !! step that led here [s]
       type(inelastic_type), intent(inout) :: state
-      integer, intent(in) :: shift                         !! node number minus place in `buffer`
-      real(wp), intent(inout), contiguous :: buffer(:, :)  !! (2, nodes of the block) [N]
+      integer, intent(in) :: place(width, 3)               !! of the corners in `buffer`
+      real(wp), intent(inout), contiguous :: buffer(:, :)  !! (2, places) [N]
       type(failure_type), intent(inout) :: failure
 
       real(wp) :: strain(width, 4), rotation(width, 3), stress(width, 4), force(width, 4)
 
       call predict(chunks, chunk, rock, fields, state, strain, rotation, stress)
       if (rock%yields) call return_flagged(chunks, chunk, rock, fields, dt, state, stress, failure)
-      associate (node => chunks%node(:, :, chunk), volume => chunks%volume(:, chunk))
-         call nodal_forces(chunks%gradient(:, :, chunk), volume, strain, rotation, stress, force)
-         call scatter(node, shift, force, buffer)
-         if (chunks%axisymmetric) call scatter_hoop(node, shift, chunks%hoop(:, chunk), volume, &
+      associate (volume => chunks%volume(:, chunk))
+         call nodal_forces(width, chunks%gradient(:, :, chunk), volume, strain, rotation, stress, &
+            force)
+         call scatter(place, force, buffer)
+         if (chunks%axisymmetric) call scatter_hoop(place, chunks%hoop(:, chunk), volume, &
             stress(:, 3), buffer)
       end associate
    end subroutine chunk_force
@@ -66,6 +67,37 @@ contains
 
       call predict(chunks, chunk, rock, fields, state, strain, rotation, stress)
    end subroutine chunk_stress
+
+   !> Forces of one element on its corners as it is, without any update; not axisymmetric.
+   function element_force(chunks, element, rock, fields, state) result(force)
+      type(chunks_type), intent(in) :: chunks
+      integer, intent(in) :: element
+      type(rock_type), intent(in) :: rock
+      type(fields_type), intent(in) :: fields
+      type(inelastic_type), intent(in) :: state
+      real(wp) :: force(2, 3)                     !! [N]
+
+      real(wp) :: before(2, 3), du(4), gradient(4), inelastic(4), strain(4), rotation(3), &
+         stress(4), corners(4)
+      integer :: corner(3), chunk, lane
+
+      chunk = chunks%chunk_of(element)
+      lane = chunks%lane_of(element)
+      corner = chunks%node(lane, :, chunk)
+      gradient = chunks%gradient(lane, :, chunk)
+      inelastic = state%strain(lane, :, chunk)
+      before = fields%u(:, corner)
+      du(1:2) = before(:, 2) - before(:, 1)
+      du(3:4) = before(:, 3) - before(:, 1)
+      strain(3) = 0.0_wp
+      call strains(1, gradient, du, strain, rotation)
+      call elastic_stress(1, rock%lame, rock%shear, strain, inelastic, stress)
+      call nodal_forces(1, gradient, chunks%volume(lane:lane, chunk), strain, rotation, stress, &
+         corners)
+      force(:, 2) = corners(1:2)
+      force(:, 3) = corners(3:4)
+      force(:, 1) = -(corners(1:2) + corners(3:4))
+   end function element_force
 
    subroutine predict(chunks, chunk, rock, fields, state, strain, rotation, stress)
       type(chunks_type), intent(in) :: chunks

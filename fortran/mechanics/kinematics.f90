@@ -122,19 +122,20 @@ contains
    end subroutine elastic_stress
 
    !> Internal forces on corners 2 and 3; corner 1 takes the opposite of their sum.
-   pure subroutine nodal_forces(gradient, volume, strain, rotation, stress, force)
-      real(wp), intent(in) :: gradient(width, 4)    !! [1/m]
-      real(wp), intent(in) :: volume(width)         !! [m3] per metre or per radian
-      real(wp), intent(in) :: strain(width, 4)
-      real(wp), intent(in) :: rotation(width, 3)    !! cos, sin, 1/tr U
-      real(wp), intent(in) :: stress(width, 4)      !! unrotated [Pa]
-      real(wp), intent(out) :: force(width, 4)      !! x2, y2, x3, y3 [N] per metre or per radian
+   pure subroutine nodal_forces(n, gradient, volume, strain, rotation, stress, force)
+      integer, intent(in) :: n                      !! lanes
+      real(wp), intent(in) :: gradient(n, 4)        !! [1/m]
+      real(wp), intent(in) :: volume(n)             !! [m3] per metre or per radian
+      real(wp), intent(in) :: strain(n, 4)
+      real(wp), intent(in) :: rotation(n, 3)        !! cos, sin, 1/tr U
+      real(wp), intent(in) :: stress(n, 4)          !! unrotated [Pa]
+      real(wp), intent(out) :: force(n, 4)          !! x2, y2, x3, y3 [N] per metre or per radian
 
       integer :: i
       real(wp) :: b, s11, s12, s21, s22, p11, p12, p21, p22
 
       !$omp simd private(b, s11, s12, s21, s22, p11, p12, p21, p22)
-      do i = 1, width
+      do i = 1, n
          b = rotation(i, 3)*(0.5_wp*(stress(i, 2) - stress(i, 1))*strain(i, 4) &
             + stress(i, 4)*(strain(i, 1) - strain(i, 2)))
          s11 = volume(i)*stress(i, 1)
@@ -153,18 +154,17 @@ contains
    end subroutine nodal_forces
 
    !> Add the forces of a chunk to the buffer of its block, in the order of its elements.
-   pure subroutine scatter(node, shift, force, buffer)
-      integer, intent(in) :: node(width, 3)
-      integer, intent(in) :: shift                      !! node number minus place in `buffer`
+   pure subroutine scatter(place, force, buffer)
+      integer, intent(in) :: place(width, 3)            !! of the corners in `buffer`
       real(wp), intent(in) :: force(width, 4)           !! x2, y2, x3, y3 [N]
-      real(wp), intent(inout), contiguous :: buffer(:, :) !! (2, nodes of the block) [N]
+      real(wp), intent(inout), contiguous :: buffer(:, :) !! (2, places) [N]
 
       integer :: i, a, b, c
 
       do i = 1, width
-         a = node(i, 1) - shift
-         b = node(i, 2) - shift
-         c = node(i, 3) - shift
+         a = place(i, 1)
+         b = place(i, 2)
+         c = place(i, 3)
          buffer(1, b) = buffer(1, b) + force(i, 1)
          buffer(2, b) = buffer(2, b) + force(i, 2)
          buffer(1, c) = buffer(1, c) + force(i, 3)
@@ -175,9 +175,8 @@ contains
    end subroutine scatter
 
    !> Radial force of the hoop stress, shared by the three corners.
-   pure subroutine scatter_hoop(node, shift, hoop, volume, stress_zz, buffer)
-      integer, intent(in) :: node(width, 3)
-      integer, intent(in) :: shift
+   pure subroutine scatter_hoop(place, hoop, volume, stress_zz, buffer)
+      integer, intent(in) :: place(width, 3)
       real(wp), intent(in) :: hoop(width)               !! 1/(3 mean radius) [1/m]
       real(wp), intent(in) :: volume(width)             !! [m3/rad]
       real(wp), intent(in) :: stress_zz(width)          !! hoop stress [Pa]
@@ -188,9 +187,9 @@ contains
 
       do i = 1, width
          share = hoop(i)*volume(i)*stress_zz(i)
-         buffer(1, node(i, 1) - shift) = buffer(1, node(i, 1) - shift) + share
-         buffer(1, node(i, 2) - shift) = buffer(1, node(i, 2) - shift) + share
-         buffer(1, node(i, 3) - shift) = buffer(1, node(i, 3) - shift) + share
+         buffer(1, place(i, 1)) = buffer(1, place(i, 1)) + share
+         buffer(1, place(i, 2)) = buffer(1, place(i, 2)) + share
+         buffer(1, place(i, 3)) = buffer(1, place(i, 3)) + share
       end do
    end subroutine scatter_hoop
 

@@ -9,8 +9,8 @@ module lithofrac_mechanics_loads
    private
 
    public :: pressure_type, ramp_type, ramp_value, velocity_type
-   public :: apply_pressure, apply_velocity, prescribed_kinetic, pressure_record, &
-      velocity_record, work_after, work_before
+   public :: add_forces, apply_pressure, apply_velocity, measure_edges, prescribed_kinetic
+   public :: pressure_record, velocity_record, work_after, work_before
 
    !> Smooth rise from 0 to 1 over `duration` after `start`.
    type :: ramp_type
@@ -31,6 +31,7 @@ module lithofrac_mechanics_loads
    !> Follower pressure on edges, with an optional spring on the outward displacement.
    type :: pressure_type
       integer, allocatable :: edge(:, :)         !! (2, n_edges) nodes, material on the left
+      integer, allocatable :: held(:, :)         !! (2, n_edges) element, side; if the mesh cracks
       real(wp) :: pressure = 0.0_wp              !! [Pa]
       real(wp) :: stiffness = 0.0_wp             !! [Pa/m]
       type(ramp_type) :: ramp
@@ -60,6 +61,26 @@ contains
       end if
    end function ramp_value
 
+   !> Outward normals and reference weights of the edges.
+   subroutine measure_edges(load, nodes, axisymmetric)
+      type(pressure_type), intent(inout) :: load
+      real(wp), intent(in) :: nodes(:, :)          !! (2, n_nodes) reference positions [m]
+      logical, intent(in) :: axisymmetric
+
+      real(wp) :: along(2)
+      integer :: i, n
+
+      n = size(load%edge, 2)
+      load%normal = spread([0.0_wp, 0.0_wp], 2, n)
+      load%length = spread(0.0_wp, 1, n)
+      do i = 1, n
+         along = nodes(:, load%edge(2, i)) - nodes(:, load%edge(1, i))
+         load%length(i) = norm2(along)
+         load%normal(:, i) = [along(2), -along(1)]/load%length(i)
+         if (axisymmetric) load%length(i) = load%length(i)*0.5_wp*sum(nodes(1, load%edge(:, i)))
+      end do
+   end subroutine measure_edges
+
    !> Forces of the pressure at `time`, on the positions of now.
    subroutine apply_pressure(load, nodes, axisymmetric, time, fields)
       type(pressure_type), intent(inout) :: load
@@ -85,6 +106,19 @@ contains
          end associate
       end do
    end subroutine apply_pressure
+
+   !> Forces that the pressure has at this step, added to those on the nodes.
+   subroutine add_forces(load, fields)
+      type(pressure_type), intent(in) :: load
+      type(fields_type), intent(inout) :: fields
+
+      integer :: i
+
+      do i = 1, size(load%edge, 2)
+         fields%external(:, load%edge(:, i)) = fields%external(:, load%edge(:, i)) &
+            + load%force(:, :, i)
+      end do
+   end subroutine add_forces
 
    pure function local_pressure(load, i, time, fields) result(pressure)
       type(pressure_type), intent(in) :: load

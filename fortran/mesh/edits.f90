@@ -11,7 +11,7 @@ module lithofrac_mesh_edits
    implicit none
    private
 
-   public :: edits_type, inherit, start_edits, undo
+   public :: edits_type, inherit, merge_edits, start_edits, undo
    public :: add_element, add_node, remember, retire, seat, unlink
 
    !> Births, retirements and changes, in order. Arrays may be longer than their counts.
@@ -43,6 +43,7 @@ contains
 
       edits%nodes_before = mesh%n_nodes
       edits%elements_before = mesh%n_elements
+      allocate (edits%node_parent(2, 0), edits%share(0), edits%element_parent(0))
    end subroutine start_edits
 
    !> A new node at x = (1 - share) x(first) + share x(second); a copy has share 0.
@@ -184,6 +185,33 @@ contains
       topology%changes = topology%changes + 1
       call start_edits(edits, mesh)
    end subroutine undo
+
+   !> Add later edits behind earlier ones, for owners that follow several at a time; what comes
+   !> out cannot be undone.
+   pure subroutine merge_edits(edits, later)
+      type(edits_type), intent(inout) :: edits
+      type(edits_type), intent(in) :: later
+
+      integer :: i
+
+      do i = 1, later%n_nodes
+         call append(edits%node_parent, edits%n_nodes, later%node_parent(:, i))
+         call reserve(edits%share, edits%n_nodes)
+         edits%share(edits%n_nodes) = later%share(i)
+      end do
+      do i = 1, later%n_elements
+         call append(edits%element_parent, edits%n_elements, later%element_parent(i))
+      end do
+      do i = 1, later%n_retired
+         call append(edits%retired, edits%n_retired, later%retired(i))
+      end do
+      do i = 1, later%n_changed
+         call append(edits%changed, edits%n_changed, later%changed(i))
+      end do
+      do i = 1, later%n_opened
+         call append(edits%opened, edits%n_opened, later%opened(:, i))
+      end do
+   end subroutine merge_edits
 
    !> Give the new nodes their values of a nodal field: a copy, or a mean between two parents.
    !>

@@ -7,7 +7,7 @@ module lithofrac_mesh_mesh
    implicit none
    private
 
-   public :: mesh_type, new_mesh, triangle_area
+   public :: living_part, mesh_type, new_mesh, triangle_area
 
    !> Three-node triangles, counter-clockwise.
    type :: mesh_type
@@ -42,6 +42,24 @@ contains
       if (status%code /= ok) return
       call assign_bodies(mesh, status)
    end subroutine new_mesh
+
+   !> The same nodes and those elements that have not been cut, in arrays without spare room.
+   pure function living_part(mesh, alive) result(part)
+      type(mesh_type), intent(in) :: mesh
+      logical, intent(in) :: alive(:)            !! (>= n_elements)
+      type(mesh_type) :: part
+
+      integer :: i, element(count(alive(:mesh%n_elements)))
+
+      element = pack([(i, i=1, mesh%n_elements)], alive(:mesh%n_elements))
+      part%n_nodes = mesh%n_nodes
+      part%n_elements = size(element)
+      part%nodes = mesh%nodes(:, :mesh%n_nodes)
+      part%triangles = mesh%triangles(:, element)
+      part%body = mesh%body(element)
+      part%body_of_node = mesh%body_of_node(:mesh%n_nodes)
+      part%n_bodies = mesh%n_bodies
+   end function living_part
 
    !> Signed area of a triangle [m2], positive when counter-clockwise.
    pure function triangle_area(a, b, c) result(area)

@@ -1,8 +1,8 @@
 !> The energy ledger: two sides, accumulated independently.
 !>
 !> Inside: elastic energy of the elements and what they dissipated. Outside: work of the
-!> boundary, of contact and of damping at the nodes, and the kinetic energy of the leap-frog. Their
-!> difference is the residual; nothing is defined as the missing term.
+!> boundary, of contact, of fading bonds and of damping at the nodes, and the kinetic energy of the
+!> leap-frog. Their difference is the residual; nothing is defined as the missing term.
 module lithofrac_run_energy
    use lithofrac_base_kinds, only: wp
    implicit none
@@ -10,7 +10,7 @@ module lithofrac_run_energy
 
    public :: ledger_type, n_ledger, pack_ledger, residual
 
-   integer, parameter :: n_ledger = 10  !! entries of `pack_ledger`
+   integer, parameter :: n_ledger = 13  !! entries of `pack_ledger`
 
    type :: ledger_type
       real(wp) :: initial = 0.0_wp      !! kinetic and elastic at the start [J]
@@ -22,6 +22,9 @@ module lithofrac_run_energy
       real(wp) :: damping = 0.0_wp      !! work of damping, negative when it takes energy [J]
       real(wp) :: contact = 0.0_wp      !! work of contact pressure [J], <= 0 where it is exact
       real(wp) :: friction = 0.0_wp     !! work of friction, negative when it takes energy [J]
+      real(wp) :: insertion = 0.0_wp    !! work of fading bonds, negative when they take energy [J]
+      real(wp) :: relump = 0.0_wp       !! kinetic energy lost as mass went to new nodes [J], <= 0
+      real(wp) :: reset = 0.0_wp        !! fracture energy to spend again; not in the balance [J]
       real(wp) :: scale = 0.0_wp        !! largest internal energy so far [J]
    end type ledger_type
 
@@ -36,19 +39,20 @@ contains
 
       scale = max(abs(ledger%external), abs(ledger%initial), ledger%scale)
       residual = ledger%kinetic + ledger%elastic + ledger%compressive + ledger%fracture &
-         - ledger%initial - ledger%external - ledger%damping - ledger%contact - ledger%friction
+         - ledger%initial - ledger%external - ledger%damping - ledger%contact - ledger%friction &
+         - ledger%insertion - ledger%relump
       if (scale > 0.0_wp) residual = residual/scale
    end function residual
 
    !> kinetic, elastic, compressive, fracture, external, damping, residual, initial, contact,
-   !> friction.
+   !> friction, insertion, relump, reset.
    pure function pack_ledger(ledger) result(values)
       type(ledger_type), intent(in) :: ledger
       real(wp) :: values(n_ledger)
 
       values = [ledger%kinetic, ledger%elastic, ledger%compressive, ledger%fracture, &
          ledger%external, ledger%damping, residual(ledger), ledger%initial, &
-         ledger%contact, ledger%friction]
+         ledger%contact, ledger%friction, ledger%insertion, ledger%relump, ledger%reset]
    end function pack_ledger
 
 end module lithofrac_run_energy

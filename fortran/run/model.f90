@@ -5,12 +5,15 @@ module lithofrac_run_model
    use lithofrac_contact_contact, only: contact_type, new_contact
    use lithofrac_contact_overlap, only: refuse_overlap
    use lithofrac_contact_surfaces, only: tag_edges
+   use lithofrac_fracture_arms, only: intra_element
+   use lithofrac_fracture_fracture, only: fracture_type, new_fracture
    use lithofrac_material_rock, only: rock_type
    use lithofrac_mechanics_blocks, only: blocks_type, new_blocks
    use lithofrac_mechanics_chunks, only: chunks_type, new_chunks
    use lithofrac_mechanics_fields, only: fields_type, inelastic_type, new_fields, new_inelastic
-   use lithofrac_mechanics_loads, only: pressure_type, ramp_type, velocity_type
+   use lithofrac_mechanics_loads, only: measure_edges, pressure_type, ramp_type, velocity_type
    use lithofrac_mechanics_lumped_mass, only: corner_masses
+   use lithofrac_mesh_edge_set, only: find_edges
    use lithofrac_mesh_mesh, only: mesh_type, new_mesh, triangle_area
    use lithofrac_run_damping, only: affine_type, n_moments
    use lithofrac_run_energy, only: ledger_type
@@ -20,7 +23,8 @@ module lithofrac_run_model
    implicit none
    private
 
-   public :: add_contact, add_pressure, add_velocity, model_type, new_model, set_motion, tag_surface
+   public :: add_contact, add_fracture, add_pressure, add_velocity, model_type, new_model
+   public :: set_mass, set_motion, tag_surface
 
    type :: model_type
       type(mesh_type) :: mesh
@@ -32,6 +36,10 @@ module lithofrac_run_model
       type(velocity_type), allocatable :: velocities(:)
       type(pressure_type), allocatable :: pressures(:)
       type(contact_type) :: contact
+      type(fracture_type) :: fracture
+      integer, allocatable :: tag_nodes(:, :)             !! (2, n) edges with a surface tag
+      integer, allocatable :: tagged(:, :)                !! (2, n) their elements, sides; if it cracks
+      integer, allocatable :: tags(:)                     !! (n)
       type(settings_type) :: settings
       type(ledger_type) :: ledger
       real(wp) :: dt = 0.0_wp                             !! [s]
@@ -44,6 +52,7 @@ module lithofrac_run_model
       type(affine_type), allocatable :: affine(:)         !! (n_bodies)
       real(wp), allocatable :: moments(:, :)              !! (n_moments, n_runs)
       real(wp), allocatable :: sums(:, :)                 !! (n_sums, n_runs + 1) last: by contact
+      integer :: reference_step = -1                      !! step of the state below, -1: none
       real(wp), allocatable :: reference_u(:, :)          !! state of the last Rayleigh quotient
       real(wp), allocatable :: reference_f(:, :)
    end type model_type
@@ -75,12 +84,13 @@ contains
       end if
       model%rocks = rocks
       model%settings = settings
-      call new_chunks(model%chunks, model%mesh, axisymmetric)
+      call new_chunks(model%chunks, model%mesh, axisymmetric, &
+         spread(.true., 1, model%mesh%n_elements))
       call new_blocks(model%blocks, model%chunks, model%mesh)
       call new_fields(model%fields, model%mesh%n_nodes)
       call new_inelastic(model%state, model%chunks, model%rocks, &
          band_widths(model%mesh, band_factor))
-      allocate (model%velocities(0), model%pressures(0))
+      allocate (model%velocities(0), model%pressures(0), model%tag_nodes(2, 0), model%tags(0))
       allocate (model%affine(model%mesh%n_bodies))
       allocate (model%alpha(model%mesh%n_bodies), source=max(0.0_wp, settings%damping_alpha))
       allocate (model%moments(n_moments, model%blocks%n_runs), source=0.0_wp)
@@ -106,12 +116,17 @@ contains
       end do
    end function band_widths
 
+   !> Lumped masses, all components free.
    subroutine set_mass(model)
       type(model_type), intent(inout) :: model
 
       integer :: element
 
+      model%fields%mass = spread(0.0_wp, 1, model%mesh%n_nodes)
       do element = 1, model%mesh%n_elements
+         if (model%fracture%on) then
+            if (.not. model%fracture%topology%alive(element)) cycle
+         end if
          associate (corner => model%mesh%triangles(:, element))
             model%fields%mass(corner) = model%fields%mass(corner) + corner_masses(model%mesh, &
                element, model%rocks(model%mesh%body(element))%density, model%chunks%axisymmetric)
@@ -197,8 +212,6 @@ contains
       type(status_type), intent(out) :: status
 
       type(pressure_type) :: load
-      real(wp) :: along(2)
-      integer :: i
 
       if (any(edge < 1) .or. any(edge > model%mesh%n_nodes) .or. size(edge) == 0) then
          call set_failure(status, bad_input, "pressure: an edge names a node that does not exist")
@@ -208,15 +221,8 @@ contains
       load%pressure = pressure
       load%stiffness = stiffness
       load%ramp = ramp
-      allocate (load%normal(2, size(edge, 2)), load%length(size(edge, 2)))
       allocate (load%force(2, 2, size(edge, 2)), source=0.0_wp)
-      do i = 1, size(edge, 2)
-         along = model%mesh%nodes(:, edge(2, i)) - model%mesh%nodes(:, edge(1, i))
-         load%length(i) = norm2(along)
-         load%normal(:, i) = [along(2), -along(1)]/load%length(i)
-         if (model%chunks%axisymmetric) load%length(i) = load%length(i) &
-            *0.5_wp*sum(model%mesh%nodes(1, edge(:, i)))
-      end do
+      call measure_edges(load, model%mesh%nodes, model%chunks%axisymmetric)
       model%pressures = [model%pressures, load]
    end subroutine add_pressure
 
@@ -247,8 +253,47 @@ contains
          call set_failure(status, bad_input, "contact: a surface has no friction")
       else
          call tag_edges(model%contact%surfaces, edge, tag, status)
+         model%tag_nodes = reshape([model%tag_nodes, edge], [2, size(model%tags) + size(edge, 2)])
+         model%tags = [model%tags, spread(tag, 1, size(edge, 2))]
       end if
    end subroutine tag_surface
+
+   !> Let bodies crack, after loads, contact and tags.
+   subroutine add_fracture(model, mode, weights, release_steps, reset, interval, status)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: mode              !! as `fracture/arms`
+      integer, intent(in) :: weights           !! as `fracture/failure_map`
+      integer, intent(in) :: release_steps     !! -1: by the length of the crack
+      integer, intent(in) :: reset             !! as `fracture/element_failure`
+      integer, intent(in) :: interval          !! steps between failure maps
+      type(status_type), intent(out) :: status
+
+      integer :: i
+
+      if (.not. model%contact%on .or. model%chunks%axisymmetric .or. model%started) then
+         call set_failure(status, bad_input, &
+            "fracture: needs contact and plane strain, and comes before the start")
+         return
+      end if
+      call new_fracture(model%fracture, model%mesh, model%rocks%poisson, mode, weights, &
+         release_steps, reset, interval, status)
+      if (status%code /= ok) return
+      associate (topology => model%fracture%topology)
+         model%tagged = find_edges(model%mesh, topology, model%tag_nodes)
+         do i = 1, size(model%pressures)
+            associate (load => model%pressures(i))
+               load%held = find_edges(model%mesh, topology, load%edge)
+               if (all(load%held > 0)) cycle
+               call set_failure(status, bad_input, &
+                  "fracture: pressure acts on an edge that is not on the boundary")
+            end associate
+         end do
+      end associate
+      if (mode /= intra_element) return
+      ! What the guard of cuts promises holds from the start, so no step ever has to change.
+      model%critical = model%fracture%rules%guard%least_step*model%critical
+      model%dt = model%settings%time_step_factor*model%critical
+   end subroutine add_fracture
 
    !> Start from given displacements and velocities at time 0.
    subroutine set_motion(model, u, v, status)

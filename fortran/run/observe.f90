@@ -37,6 +37,8 @@ contains
          ledger%damping = ledger%damping + 0.5_wp*model%dt*sum(model%sums(2, :))
          ledger%contact = ledger%contact + model%contact%work_before(1)
          ledger%friction = ledger%friction + model%contact%work_before(2)
+         ledger%insertion = ledger%insertion &
+            + 0.5_wp*model%dt*model%fracture%bonds%power_before
       end if
       model%ledger%scale = max(model%ledger%scale, ledger%elastic + ledger%compressive &
          + ledger%fracture)

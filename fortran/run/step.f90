@@ -1,4 +1,4 @@
-!> The time loop: forces, boundary, nodes, contact, and again.
+!> The time loop: forces, boundary, nodes, contact, cracks, and again.
 !>
 !> Between calls the fields are at time n: displacement u(n), internal force of u(n) and the
 !> velocity of the half step after it. The next call starts by moving the nodes.
@@ -7,6 +7,7 @@ module lithofrac_run_step
    use lithofrac_base_status, only: bad_element, bad_input, no_return_map, not_finite, ok, &
       set_failure, status_type
    use lithofrac_contact_overlap, only: refuse_overlap
+   use lithofrac_fracture_bonds, only: apply_bonds, bond_power, forget_bonds
    use lithofrac_mechanics_blocks, only: assemble
    use lithofrac_mechanics_internal_force, only: chunk_force, failure_type
    use lithofrac_mechanics_loads, only: apply_pressure, apply_velocity, work_after, work_before
@@ -14,6 +15,7 @@ module lithofrac_run_step
    use lithofrac_run_contact_step, only: bring_masses, book_contact, close_contacts, &
       note_velocities
    use lithofrac_run_damping, only: fit_affine, rayleigh_frequency
+   use lithofrac_run_insert_cracks, only: insert_cracks
    use lithofrac_run_model, only: model_type
    use lithofrac_run_node_update, only: sum_moments, update_affine, update_ground, &
       update_plain
@@ -117,6 +119,9 @@ contains
          if (.not. model%contact%on) cycle
          !$omp single
          call close_contacts(model, contact_status)
+         if (model%fracture%on .and. contact_status%code == ok) then
+            call insert_cracks(model, contact_status)
+         end if
          !$omp end single
          if (contact_status%code /= ok) exit
          !$omp do schedule(static)
@@ -139,16 +144,15 @@ contains
       integer, intent(in) :: block
       type(failure_type), intent(inout) :: failure
 
-      integer :: chunk, first, last, shift
+      integer :: chunk
 
-      first = model%blocks%offset(block) + 1
-      last = first + model%blocks%high(block) - model%blocks%low(block)
-      shift = model%blocks%low(block) - 1
-      model%blocks%buffer(:, first:last) = 0.0_wp
+      associate (blocks => model%blocks)
+         blocks%buffer(:, blocks%first_place(block):blocks%first_place(block + 1) - 1) = 0.0_wp
+      end associate
       do chunk = model%blocks%first_chunk(block), model%blocks%first_chunk(block + 1) - 1
          call chunk_force(model%chunks, chunk, model%rocks(model%chunks%body(chunk)), &
-            model%fields, merge(model%dt, 0.0_wp, model%started), model%state, shift, &
-            model%blocks%buffer(:, first:last), failure)
+            model%fields, merge(model%dt, 0.0_wp, model%started), model%state, &
+            model%blocks%place(:, :, chunk), model%blocks%buffer, failure)
       end do
    end subroutine block_force
 
@@ -163,6 +167,8 @@ contains
             + work_after(model%velocities, model%pressures, dt, model%fields)
          if (model%step > 0) ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(2, :))
          ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(3, :))
+         if (model%fracture%on) ledger%insertion = ledger%insertion + 0.5_wp*dt &
+            *(model%fracture%bonds%power_before + bond_power(model%fracture%bonds, model%fields%v))
       end associate
       if (model%contact%on) then
          call book_contact(model)
@@ -183,6 +189,13 @@ contains
             model%fields%external(:, model%pressures(load)%edge(:, i)) = 0.0_wp
          end do
       end do
+      if (model%fracture%on) then
+         do i = 1, size(model%fracture%bonds%list)
+            model%fields%external(:, model%fracture%bonds%list(i)%node) = 0.0_wp
+         end do
+         call forget_bonds(model%fracture%bonds, model%step)
+         call apply_bonds(model%fracture%bonds, model%step, model%fields%v, model%fields%external)
+      end if
       do load = 1, size(model%pressures)
          call apply_pressure(model%pressures(load), model%mesh%nodes, &
             model%chunks%axisymmetric, model%step*model%dt, model%fields)
@@ -226,11 +239,12 @@ contains
       if (phase == 0) then
          model%reference_u = u
          model%reference_f = model%fields%internal
+         model%reference_step = model%step
          if (model%step == 0) model%alpha = alpha_of(model, model%lowest_frequency)
-      else
+      else if (model%reference_step >= 0) then
          do body = 1, model%mesh%n_bodies
             model%alpha(body) = alpha_of(model, rayleigh_frequency(body, &
-               model%mesh%body_of_node, model%fields%free_mass, &
+               model%mesh%body_of_node(:model%mesh%n_nodes), model%fields%free_mass, &
                u - model%reference_u, model%fields%internal - model%reference_f, &
                model%lowest_frequency(body)))
          end do
@@ -339,6 +353,9 @@ contains
       integer :: element
 
       do element = 1, model%mesh%n_elements
+         if (model%fracture%on) then
+            if (.not. model%fracture%topology%alive(element)) cycle
+         end if
          associate (corner => model%mesh%triangles(:, element))
             x = model%mesh%nodes(:, corner) + model%fields%u(:, corner)
          end associate

@@ -422,6 +422,7 @@ contains
       integer(c_int), intent(out) :: code
       character(len=256), intent(out) :: message
 
+      real(c_double), allocatable :: retry(:)
       type(crack_type), allocatable :: cracks(:)
       integer :: i, k
 
@@ -434,8 +435,10 @@ contains
       call check_handle(mesh, code, message)
       if (code == ok) call check_sizes(mesh, slots(mesh)%mesh%n_nodes, n_elements, code, message)
       if (code /= ok) return
+      allocate (retry(slots(mesh)%mesh%n_nodes), source=0.0_c_double)
       call plan_cracks(slots(mesh)%mesh, slots(mesh)%topology, factor, normal, &
-         rules_type(mode, weights, most, guard_of(guard, poisson)), cracks, n_waiting, n_closed)
+         rules_type(mode, weights, most, guard_of(guard, poisson)), retry, cracks, n_waiting, &
+         n_closed)
       n = size(cracks)
       do i = 1, n
          node(i) = cracks(i)%node

@@ -3,12 +3,14 @@
 module run_face
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use lithofrac_base_status, only: bad_input, ok, set_failure, status_type
+   use lithofrac_fracture_element_failure, only: set_failure_factors
+   use lithofrac_fracture_fragments, only: find_parts
    use lithofrac_material_rock, only: new_rock, rock_type
    use lithofrac_mechanics_loads, only: ramp_type
    use lithofrac_run_checkpoint, only: checkpoint_size, restore, save_state
    use lithofrac_run_energy, only: ledger_type, pack_ledger
-   use lithofrac_run_model, only: add_contact, add_pressure, add_velocity, model_type, new_model, &
-      set_motion, tag_surface
+   use lithofrac_run_model, only: add_contact, add_fracture, add_pressure, add_velocity, model_type, &
+      new_model, set_motion, tag_surface
    use lithofrac_run_observe, only: element_state, energy_now, load_records
    use lithofrac_run_settings, only: settings_type
    use lithofrac_run_step, only: advance
@@ -18,6 +20,7 @@ module run_face
    public :: run_new, run_drop, run_add_velocity, run_add_pressure, run_set_motion
    public :: run_advance, run_clock, run_energy, run_loads, run_elements, run_nodes
    public :: run_add_contact, run_tag_surface, run_contact_forces, run_contact_statistics
+   public :: run_add_fracture, run_sizes, run_mesh, run_parts, run_failure, run_cracks
    public :: run_checkpoint_size, run_save, run_restore
 
    integer, parameter :: max_runs = 64
@@ -160,6 +163,25 @@ contains
       call export_status(status, code, message)
    end subroutine run_tag_surface
 
+   !> Let bodies crack, after loads, contact and tags.
+   subroutine run_add_fracture(run, mode, weights, release_steps, reset, interval, code, message)
+      integer(c_int), intent(in) :: run
+      integer(c_int), intent(in) :: mode               !! as `fracture/arms`
+      integer(c_int), intent(in) :: weights            !! as `fracture/failure_map`
+      integer(c_int), intent(in) :: release_steps      !! -1: by the length of the crack
+      integer(c_int), intent(in) :: reset              !! as `fracture/element_failure`
+      integer(c_int), intent(in) :: interval           !! steps between failure maps
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      type(status_type) :: status
+
+      call check_handle(run, code, message)
+      if (code /= ok) return
+      call add_fracture(slots(run)%model, mode, weights, release_steps, reset, interval, status)
+      call export_status(status, code, message)
+   end subroutine run_add_fracture
+
    !> Displacement and velocity at time 0.
    subroutine run_set_motion(run, u, v, n_nodes, code, message)
       integer(c_int), intent(in) :: run, n_nodes
@@ -214,10 +236,10 @@ contains
    end subroutine run_clock
 
    !> The ledger: kinetic, elastic, compressive, fracture, external, damping [J], residual
-   !> (relative), initial, contact, friction [J].
+   !> (relative), initial, contact, friction, insertion, relump, reset [J].
    subroutine run_energy(run, values, code, message)
       integer(c_int), intent(in) :: run
-      real(c_double), intent(out) :: values(10)
+      real(c_double), intent(out) :: values(13)
       integer(c_int), intent(out) :: code
       character(len=256), intent(out) :: message
 
@@ -273,6 +295,99 @@ contains
       v = slots(run)%model%fields%v
       mass = slots(run)%model%fields%mass
    end subroutine run_nodes
+
+   !> Nodes, elements (also those that were cut), opened edges; cracks, fallbacks, times that a
+   !> failed node had no way for a crack, most resets of one element, pairs of now.
+   subroutine run_sizes(run, sizes, code, message)
+      integer(c_int), intent(in) :: run
+      integer(c_int), intent(out) :: sizes(8)
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      sizes = 0
+      call check_handle(run, code, message)
+      if (code /= ok) return
+      associate (model => slots(run)%model)
+         sizes(:2) = [model%mesh%n_nodes, model%mesh%n_elements]
+         if (model%contact%on) sizes(8) = model%contact%n_pairs
+         if (.not. model%fracture%on) return
+         associate (fracture => model%fracture)
+            sizes(3:7) = [fracture%n_edges, fracture%n_cracks, fracture%n_fallbacks, &
+               fracture%n_closed, maxval(fracture%resets)]
+         end associate
+      end associate
+   end subroutine run_sizes
+
+   !> The mesh as cracks have left it; elements that were cut are marked.
+   subroutine run_mesh(run, n_nodes, n_elements, nodes, triangles, body, alive, code, message)
+      integer(c_int), intent(in) :: run, n_nodes, n_elements
+      real(c_double), intent(out) :: nodes(2, n_nodes)         !! reference [m]
+      integer(c_int), intent(out) :: triangles(3, n_elements)
+      integer(c_int), intent(out) :: body(n_elements)
+      integer(c_int), intent(out) :: alive(n_elements)         !! 0: it was cut
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      nodes = 0.0_c_double
+      triangles = 0
+      body = 0
+      alive = 1
+      call check_handle(run, code, message)
+      if (code /= ok) return
+      associate (model => slots(run)%model)
+         nodes = model%mesh%nodes(:, :n_nodes)
+         triangles = model%mesh%triangles(:, :n_elements)
+         body = model%mesh%body(:n_elements)
+         if (model%fracture%on) alive = merge(1, 0, model%fracture%topology%alive(:n_elements))
+      end associate
+   end subroutine run_mesh
+
+   !> Lowest element of the part that each element hangs together with; 0 if it was cut.
+   subroutine run_parts(run, n_elements, part, code, message)
+      integer(c_int), intent(in) :: run, n_elements
+      integer(c_int), intent(out) :: part(n_elements)
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      part = 1
+      call check_handle(run, code, message)
+      if (code /= ok) return
+      associate (model => slots(run)%model)
+         if (model%fracture%on) part = find_parts(model%mesh, model%fracture%topology)
+      end associate
+   end subroutine run_parts
+
+   !> Failure factor F_k of every element (eq. 21), and how often it has been reset.
+   subroutine run_failure(run, n_elements, factor, resets, code, message)
+      integer(c_int), intent(in) :: run, n_elements
+      real(c_double), intent(out) :: factor(n_elements)
+      integer(c_int), intent(out) :: resets(n_elements)
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      real(c_double) :: normal(2, n_elements)
+
+      factor = 0.0_c_double
+      resets = 0
+      call check_handle(run, code, message)
+      if (code /= ok) return
+      associate (model => slots(run)%model)
+         call set_failure_factors(model%chunks, model%rocks, model%state, factor, normal)
+         if (model%fracture%on) resets = model%fracture%resets(:n_elements)
+      end associate
+   end subroutine run_failure
+
+   !> The record of opened edges; rows as in `fracture_type`.
+   subroutine run_cracks(run, n_edges, record, code, message)
+      integer(c_int), intent(in) :: run, n_edges
+      real(c_double), intent(out) :: record(16, n_edges)
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      record = 0.0_c_double
+      call check_handle(run, code, message)
+      if (code == ok .and. n_edges > 0) record = slots(run)%model%fracture%record(:, :n_edges)
+   end subroutine run_cracks
 
    !> Contact force on every node at the time of the fields.
    subroutine run_contact_forces(run, n_nodes, force, code, message)

@@ -12,7 +12,7 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 from lithofrac import _core
 from lithofrac.errors import CoreError, checked
-from lithofrac.problem import Contact, Damping, Mesh, Problem
+from lithofrac.problem import Contact, Damping, Fracture, Mesh, Problem
 
 _face = _core.run_face
 _new = checked(_face.run_new)
@@ -21,6 +21,12 @@ _add_velocity = checked(_face.run_add_velocity)
 _add_pressure = checked(_face.run_add_pressure)
 _add_contact = checked(_face.run_add_contact)
 _tag_surface = checked(_face.run_tag_surface)
+_add_fracture = checked(_face.run_add_fracture)
+_sizes = checked(_face.run_sizes)
+_mesh = checked(_face.run_mesh)
+_parts = checked(_face.run_parts)
+_failure = checked(_face.run_failure)
+_cracks = checked(_face.run_cracks)
 _set_motion = checked(_face.run_set_motion)
 _advance = checked(_face.run_advance)
 _clock = checked(_face.run_clock)
@@ -35,6 +41,9 @@ _save = checked(_face.run_save)
 _restore = checked(_face.run_restore)
 
 BAND_FACTOR = {"sqrt_2A": 2.0, "sqrt_A": 1.0}
+MODES = {"inter_element": 1, "intra_element": 2}  # fortran/fracture/arms.f90
+WEIGHTS = {"volume": 0, "failure_factor": 1}  # fortran/fracture/failure_map.f90
+RESETS = {"normal": 0, "paper": 1}  # fortran/fracture/element_failure.f90
 DAMPING = {"none": 0, "affine": 1, "ground": 2}  # fortran/run/settings.f90
 
 
@@ -52,6 +61,9 @@ class Energy:
     initial: float
     contact: float  # work of contact pressure
     friction: float  # work of friction, <= 0
+    insertion: float  # work of the bonds that fade on new cracks
+    relump: float  # kinetic energy lost as mass went to new nodes, <= 0
+    reset: float  # fracture energy that elements may spend again; not part of the balance
 
     @property
     def internal(self) -> float:
@@ -74,6 +86,20 @@ class ContactStatistics:
     def sweeps_mean(self) -> float:
         """Sweeps in a step with contact."""
         return self.sweeps / self.steps if self.steps else 0.0
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """What cracks have made of the mesh so far."""
+
+    nodes: int
+    elements: int  # also those that were cut
+    opened_edges: int
+    cracks: int  # failed nodes that have cracked
+    fallbacks: int  # edges taken where a cut was planned
+    closed: int  # times that a failed node had no way for a crack
+    most_resets: int  # of one element
+    contact_pairs: int  # of now
 
 
 @dataclass(frozen=True)
@@ -128,6 +154,8 @@ class Run:
             )
         if problem.contact is not None:
             self._add_contact(problem.contact, problem.mesh)
+        if problem.fracture is not None:
+            self._add_fracture(problem.fracture)
 
     def _add_contact(self, contact: Contact, mesh: Mesh) -> None:
         try:
@@ -137,6 +165,16 @@ class Run:
         _add_contact(self._handle, friction)
         for tag in range(len(mesh.body_names), len(names)):
             _tag_surface(self._handle, (mesh.edge_sets[names[tag]] + 1).T, tag + 1)
+
+    def _add_fracture(self, fracture: Fracture) -> None:
+        _add_fracture(
+            self._handle,
+            MODES[fracture.mode],
+            WEIGHTS[fracture.weights],
+            -1 if fracture.release_steps is None else fracture.release_steps,
+            RESETS[fracture.reset],
+            fracture.interval,
+        )
 
     def __del__(self) -> None:
         if getattr(self, "_handle", 0):
@@ -185,12 +223,37 @@ class Run:
 
     def nodes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Displacement (n, 2) [m], velocity (n, 2) [m/s] of the half step after, mass (n,) [kg]."""
-        displacement, velocity, mass = _nodes(self._handle, len(self.problem.mesh.nodes))
+        displacement, velocity, mass = _nodes(self._handle, self.sizes().nodes)
         return displacement.T, velocity.T, mass
 
     def contact_forces(self) -> np.ndarray:
         """Contact force on every node [N], (n, 2), at the time of the fields."""
-        return _contact_forces(self._handle, len(self.problem.mesh.nodes)).T
+        return _contact_forces(self._handle, self.sizes().nodes).T
+
+    def sizes(self) -> Sizes:
+        """Nodes, elements, cracks."""
+        return Sizes(*map(int, _sizes(self._handle)))
+
+    def mesh(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """The mesh of now: reference nodes (n, 2) [m], triangles (m, 3), body (m,), alive (m,).
+
+        Copies of a node share its reference position; an element that was cut is not alive.
+        """
+        sizes = self.sizes()
+        nodes, triangles, body, alive = _mesh(self._handle, sizes.nodes, sizes.elements)
+        return nodes.T, triangles.T - 1, body - 1, alive.astype(bool)
+
+    def parts(self) -> np.ndarray:
+        """Lowest element that each element hangs together with, (m,); -1 if it was cut."""
+        return _parts(self._handle, self.sizes().elements) - 1
+
+    def failure(self) -> tuple[np.ndarray, np.ndarray]:
+        """Failure factor (eq. 21) of every element and how often it was reset, both (m,)."""
+        return _failure(self._handle, self.sizes().elements)
+
+    def cracks(self) -> np.ndarray:
+        """The record of opened edges, (k, 16); columns as in fortran/fracture/fracture.f90."""
+        return _cracks(self._handle, self.sizes().opened_edges).T
 
     def contact_statistics(self) -> ContactStatistics:
         """Pairs, sweeps and penetration since the start."""

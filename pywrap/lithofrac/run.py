@@ -18,6 +18,7 @@ from lithofrac.core import Run
 from lithofrac.errors import CoreError
 from lithofrac.problem import Problem
 from lithofrac.results import checkpoint
+from lithofrac.results.cracks import crack_table, fragment_table
 from lithofrac.results.fields import write_frame, write_series
 from lithofrac.results.files import write_json, write_table
 from lithofrac.results.recorder import Recorder
@@ -54,6 +55,7 @@ def plan(problem: Problem) -> dict:
             "damping": problem.damping.fraction > 0.0 or bool(problem.damping.alpha),
             "pressure": bool(problem.pressure_loads),
             "contact": problem.contact is not None,
+            "crack insertion": problem.fracture is not None,
             "probes": bool(problem.probes),
             "field output": problem.fields > 0,
         },
@@ -196,7 +198,7 @@ class _Session:
             "time_s": self.run.step * self.run.dt,
             "percent": 100.0 * self.run.step / self.steps,
             "rate": done * len(self.problem.mesh.triangles) / max(seconds, 1e-9),
-            "cracks": 0,
+            "cracks": self.run.sizes().cracks,
             "residual": self.recorder.energy[-1][-1],
             "seconds_left": seconds / max(done, 1) * (self.steps - self.run.step),
         }
@@ -209,6 +211,10 @@ class _Session:
         write_table(self.out / "energy.parquet", energy)
         if self.recorder.probes:
             write_table(self.out / "probes.parquet", self.recorder.probe_table())
+        if self.problem.fracture is not None:
+            write_table(self.out / "cracks.parquet", crack_table(self.run))
+            fragments = fragment_table(self.recorder.fragments)
+            write_table(self.out / "fragments.parquet", fragments)
         if self.frames:
             write_series(self.out / "fields.pvd", self.frames)
         summary = self._summary(status, message, history, energy)
@@ -218,7 +224,7 @@ class _Session:
     def _summary(self, status: str, message: str, history, energy) -> dict:
         run, elements = self.run, len(self.problem.mesh.triangles)
         core, last = self.core_seconds, energy.iloc[-1]
-        contact = run.contact_statistics()
+        contact, sizes = run.contact_statistics(), run.sizes()
         return {
             "status": status,
             "message": message,
@@ -239,10 +245,15 @@ class _Session:
             "damping_over_external": _ratio(
                 -energy["damping_J"].iloc[-1], energy["external_J"].iloc[-1]
             ),
-            "max_plastic_strain": _finite(run.elements(np.arange(elements)).plastic_strain.max()),
-            # without crack insertion these are zero by construction
-            "cracks": 0,
-            "fragments": 0,
+            "max_plastic_strain": _finite(
+                run.elements(np.arange(sizes.elements)).plastic_strain.max()
+            ),
+            "cracks": sizes.cracks,
+            "fragments": self.recorder.fragments_now,
+            "crack_length_mm": float(1e3 * run.cracks()[:, 6].sum()),
+            "crack_fallbacks": sizes.fallbacks,
+            "crack_nodes_without_way": sizes.closed,
+            "most_resets_of_an_element": sizes.most_resets,
             "max_penetration_over_h": contact.max_penetration_over_h,
             "contact_pairs_max": contact.pairs_max,
             "contact_sweeps_mean": contact.sweeps_mean,

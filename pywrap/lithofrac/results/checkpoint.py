@@ -12,7 +12,7 @@ from lithofrac.errors import CheckpointError
 from lithofrac.problem import Problem
 from lithofrac.results.files import write_whole
 
-FORMAT = 1  # raise it whenever the meaning of a stored number changes
+FORMAT = 2  # raise it whenever the meaning of a stored number changes
 NAME, PREVIOUS = "checkpoint.npz", "checkpoint_previous.npz"
 
 
@@ -30,7 +30,10 @@ def fingerprint(problem: Problem) -> str:
             is_array = isinstance(value, np.ndarray)
             digest.update(value.tobytes() if is_array else repr(value).encode())
     settings = (problem.axisymmetric, problem.damping, problem.time_step_factor, problem.records)
-    digest.update(repr((*settings, problem.probes, problem.end_time)).encode())
+    settings = (*settings, problem.probes, problem.end_time, problem.contact, problem.fracture)
+    digest.update(repr(settings).encode())
+    for name, edges in sorted(mesh.edge_sets.items()):
+        digest.update(name.encode() + edges.tobytes())
     return digest.hexdigest()
 
 

@@ -13,13 +13,15 @@ from lithofrac.results.files import write_whole
 
 
 def write_frame(path: Path, run: Run) -> None:
-    """Write displacement, velocity and element state of now as one VTU file.
+    """Write the mesh of now with displacement, velocity and element state as one VTU file.
 
+    Elements that were cut are left out; copies of a node share its reference position.
     Stress and strain are in the frame that rotates with the material; SI units in the names.
     """
-    mesh = run.problem.mesh
+    nodes, triangles, body, alive = run.mesh()
     displacement, velocity, _ = run.nodes()
-    state = run.elements(np.arange(len(mesh.triangles)))
+    state = run.elements(np.flatnonzero(alive))
+    points = {"displacement_m": _with_zero(displacement), "velocity_m_s": _with_zero(velocity)}
     cells = {
         "stress_Pa": state.stress,
         "strain": state.strain,
@@ -27,15 +29,16 @@ def write_frame(path: Path, run: Run) -> None:
         "tensile_strength_Pa": state.tensile_strength,
         "fracturing_strain": state.fracturing_strain,
         "crack_angle_rad": state.crack_angle,
-        "body": mesh.body,
+        "body": body[alive],
     }
+    if run.problem.contact is not None:
+        points["contact_force_N"] = _with_zero(run.contact_forces())
+    if run.problem.fracture is not None:
+        cells["failure_factor"] = run.failure()[0][alive]
     grid = meshio.Mesh(
-        _with_zero(mesh.nodes),
-        [("triangle", mesh.triangles)],
-        point_data={
-            "displacement_m": _with_zero(displacement),
-            "velocity_m_s": _with_zero(velocity),
-        },
+        _with_zero(nodes),
+        [("triangle", triangles[alive])],
+        point_data=points,
         cell_data={name: [np.ascontiguousarray(values)] for name, values in cells.items()},
     )
     write_whole(path, lambda part: meshio.write(part, grid, file_format="vtu"))

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from lithofrac.core import Run
+from lithofrac.results.cracks import FRAGMENT_COLUMNS, fragments
 
 ENERGY = (
     "kinetic",
@@ -16,6 +17,9 @@ ENERGY = (
     "damping",
     "contact",
     "friction",
+    "insertion",
+    "relump",
+    "reset",
 )
 ENERGY_COLUMNS = [
     "time_s",
@@ -27,6 +31,9 @@ ENERGY_COLUMNS = [
     "damping_J",
     "contact_J",
     "friction_J",
+    "insertion_J",
+    "relump_J",
+    "reset_J",
     "residual_J",
     "residual_relative",
 ]
@@ -45,15 +52,22 @@ class Recorder:
         self.run = run
         problem = run.problem
         self.names = [load.name for load in (*problem.velocity_loads, *problem.pressure_loads)]
-        self.history: list[np.ndarray] = []  # step, time, then force and displacement per load
+        # step, time, force and displacement per load, then what `_contact_columns` names
+        self.history: list[np.ndarray] = []
         self.energy: list[np.ndarray] = []
         self.probes: list[np.ndarray] = []
+        self.fragments = np.zeros((0, len(FRAGMENT_COLUMNS)))  # each where it was first seen
+        self.fragments_now = 0
+        self._edges_seen = 0
 
     def record(self) -> None:
         """Take one row of everything."""
         run = self.run
         ledger, time = run.energy(), run.step * run.dt
-        self.history.append(np.concatenate([[run.step, time], run.loads().ravel()]))
+        self.history.append(
+            np.concatenate([[run.step, time], run.loads().ravel(), self._contact_row()])
+        )
+        self._note_fragments()
         scale = max(abs(ledger.external), abs(ledger.initial), ledger.internal)
         entries = [getattr(ledger, name) for name in ENERGY]
         self.energy.append(np.array([time, *entries, ledger.residual * scale, ledger.residual]))
@@ -69,9 +83,46 @@ class Recorder:
             )
             self.probes.append(np.column_stack([np.full(len(rows), time), rows]))
 
+    def _contact_row(self) -> np.ndarray:
+        """Values of `_contact_columns`; nothing without contact."""
+        run = self.run
+        if run.problem.contact is None:
+            return np.zeros(0)
+        sizes = run.sizes()
+        forces = run.contact_forces()
+        nodes, triangles, body, _ = run.mesh()
+        body_of = np.zeros(len(nodes), dtype=int)
+        body_of[triangles[::-1]] = body[::-1, None]
+        sums = [forces[body_of == i].sum(axis=0) for i in range(len(run.problem.mesh.body_names))]
+        length = 1e3 * run.cracks()[:, 6].sum()
+        return np.concatenate([[sizes.contact_pairs, sizes.cracks, length], *sums])
+
+    def _contact_columns(self) -> list[str]:
+        if self.run.problem.contact is None:
+            return []
+        bodies = self.run.problem.mesh.body_names
+        forces = [f"{name}_contact_force_{axis}_N" for name in bodies for axis in "xy"]
+        return ["contact_pairs", "cracks", "crack_length_mm", *forces]
+
+    def _note_fragments(self) -> None:
+        """Add the fragments that have come loose since the last record."""
+        edges = self.run.sizes().opened_edges
+        if edges == self._edges_seen:
+            return
+        self._edges_seen = edges
+        rows = fragments(self.run)
+        self.fragments_now = len(rows)
+        new = ~np.isin(rows[:, 1], self.fragments[:, 1])
+        self.fragments = np.concatenate([self.fragments, rows[new]])
+
     def arrays(self) -> dict[str, np.ndarray]:
         """What a checkpoint keeps."""
-        kept = {"history": np.array(self.history), "energy": np.array(self.energy)}
+        kept = {
+            "history": np.array(self.history),
+            "energy": np.array(self.energy),
+            "fragments": self.fragments,
+            "fragments_seen": np.array([self.fragments_now, self._edges_seen]),
+        }
         return kept | ({"probes": np.array(self.probes)} if self.probes else {})
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
@@ -79,6 +130,8 @@ class Recorder:
         self.history = list(arrays["history"])
         self.energy = list(arrays["energy"])
         self.probes = list(arrays.get("probes", []))
+        self.fragments = arrays["fragments"]
+        self.fragments_now, self._edges_seen = map(int, arrays["fragments_seen"])
 
     def history_table(self) -> pd.DataFrame:
         """Boundary records with the axial and lateral measures of the specimen.
@@ -92,6 +145,11 @@ class Recorder:
         for i, name in enumerate(self.names):
             table[f"{name}_force_N"] = rows[:, 2 + 2 * i]
             table[f"{name}_displacement_mm"] = 1e3 * rows[:, 3 + 2 * i]
+        first = 2 + 2 * len(self.names)
+        for i, name in enumerate(self._contact_columns()):
+            table[name] = rows[:, first + i]
+            if name in ("contact_pairs", "cracks"):
+                table[name] = table[name].astype(int)
         return self._measures(table)
 
     def _measures(self, table: pd.DataFrame) -> pd.DataFrame:
