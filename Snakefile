@@ -9,6 +9,11 @@ OUT = config.get("out", "out")
 ENTRIES = load_suite(SUITE)
 CASES = {name: ENTRIES.case(name).resolved() for name in ENTRIES.cases}
 SCENES = {case["title"]: name for name, case in reversed(CASES.items())}.values()
+DISCRETE = [
+    name
+    for name, case in CASES.items()
+    if case.get("fracture", {}).get("mode", "off") != "off"
+]
 
 ROCKS = ["quartzite", "sandstone", "tyndall_limestone"]
 CONFINEMENTS = ["00", "01", "02", "05", "10", "15", "20", "30", "40"]  # MPa
@@ -35,7 +40,17 @@ TABLES = {
     **{"zigong": [], "zigong_fit": []},
     "kirsch": [run for run in RUNS if "/kirsch" in run],
     "run_time": RUNS,
+    **{"cracks": RUNS, "bands": RUNS},
 }
+COMPARED = {
+    "punch": [run for run in RUNS if "/punch_" in run],
+    "fracture_series": [run for run in RUNS if "/sandstone_soft_p" in run],
+}
+FIGURES = expand(
+    f"{OUT}/figures/{{kind}}_{{case}}.svg",
+    kind=["fractures", "events", "energy"],
+    case=DISCRETE,
+) + [f"{OUT}/figures/{kind}.svg" for kind, runs in COMPARED.items() if runs]
 
 
 report: "reports/captions/suite.rst"
@@ -43,6 +58,7 @@ report: "reports/captions/suite.rst"
 
 wildcard_constraints:
     case="|".join(CASES),
+    compared="|".join(COMPARED),
 
 
 rule all:
@@ -165,6 +181,48 @@ rule plot_suite:
         " lithofrac plot measured {input.rock} --out {output.measured}) > {log} 2>&1"
 
 
+rule plot_cracks:
+    input:
+        DRAWING,
+        run=f"{OUT}/runs/{{case}}/summary.json",
+    output:
+        fractures=report(
+            f"{OUT}/figures/fractures_{{case}}.svg",
+            caption="reports/captions/fractures.rst",
+            category="5 Cracks",
+        ),
+        events=report(
+            f"{OUT}/figures/events_{{case}}.svg",
+            caption="reports/captions/events.rst",
+            category="5 Cracks",
+        ),
+    log:
+        f"{OUT}/log/plot_cracks_{{case}}.txt",
+    message:
+        "Plot the cracks of {wildcards.case}"
+    shell:
+        "(lithofrac plot fractures {input.run} --out {output.fractures} &&"
+        " lithofrac plot events {input.run} --out {output.events}) > {log} 2>&1"
+
+
+rule plot_compared:
+    input:
+        DRAWING,
+        runs=lambda wildcards: COMPARED[wildcards.compared],
+    output:
+        report(
+            f"{OUT}/figures/{{compared}}.svg",
+            caption="reports/captions/compared.rst",
+            category="5 Cracks",
+        ),
+    log:
+        f"{OUT}/log/plot_{{compared}}.txt",
+    message:
+        "Plot {wildcards.compared}"
+    shell:
+        "lithofrac plot {wildcards.compared} {input.runs} --out {output} > {log} 2>&1"
+
+
 rule table:
     input:
         DRAWING,
@@ -198,6 +256,7 @@ rule summary:
     input:
         expand(f"{OUT}/tables/{{table}}.csv", table=TABLES),
         rules.plot_suite.output,
+        FIGURES,
         Path("reports/sheets").glob("*.md"),
     output:
         markdown=f"{OUT}/report.md",

@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pandas as pd
 import pytest
@@ -10,6 +11,8 @@ import yaml
 
 from lithofrac.analysis.mohr_coulomb import peak_strength, residual_strength
 from lithofrac.config.material import Material
+from lithofrac.problem import Mesh
+from lithofrac.results.fields import write_series
 
 ROOT = Path(__file__).parents[2]
 
@@ -69,7 +72,7 @@ def make_run(tmp_path, sandstone):
                 "elastic_J": np.minimum(elastic, 1e6 * work),
                 "compressive_dissipation_J": np.maximum(1e6 * work - elastic, 0.0) * 0.8,
                 "fracture_dissipation_J": np.maximum(1e6 * work - elastic, 0.0) * 0.15,
-                "damping_J": np.maximum(1e6 * work - elastic, 0.0) * 0.05,
+                "damping_J": -np.maximum(1e6 * work - elastic, 0.0) * 0.05,
                 "external_J": 1e6 * work,
                 "residual_J": 1e-9 * work,
             }
@@ -92,6 +95,110 @@ def make_run(tmp_path, sandstone):
             },
         }
         (folder / "case.yaml").write_text(yaml.safe_dump(case))
+        return folder
+
+    return made
+
+
+def block_mesh(platen: bool = True) -> Mesh:
+    """Rock of 4 x 6 mm in squares of 1 mm, two triangles each, below a platen of 4 x 1 mm.
+
+    Nodes of the rock stand at (i, j) mm with number 5 j + i.
+    """
+    rows = [(0.0, 7, "rock")] + ([(6.0, 2, "platen")] if platen else [])
+    nodes, triangles, body = [], [], []
+    for index, (bottom, n, _) in enumerate(rows):
+        first = sum(len(part) for part in nodes)
+        x, y = np.meshgrid(np.arange(5.0), bottom + np.arange(n))
+        nodes.append(1e-3 * np.column_stack([x.ravel(), y.ravel()]))
+        number = first + np.arange(5 * n).reshape(n, 5)
+        a, b, c, d = (
+            part.ravel()
+            for part in (number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1])
+        )
+        triangles += [np.column_stack([a, b, c]), np.column_stack([a, c, d])]
+        body += [np.full(2 * len(a), index)]
+    return Mesh(
+        np.concatenate(nodes), np.concatenate(triangles).astype(np.int32),
+        np.concatenate(body).astype(np.int32), tuple(name for *_, name in rows),
+    )  # fmt: skip
+
+
+def opened(mesh: Mesh, x_mm: float, from_mm: float, opening_mm: float):
+    """Mesh with a vertical crack from the top of the rock down to a tip, opened to both sides.
+
+    Returns nodes (n, 2) [m], displacement (n, 2) [m], triangles (m, 3); the tip is not split.
+    """
+    rock, top = mesh.body == 0, 6e-3
+    on_it = np.isclose(mesh.nodes[:, 0], 1e-3 * x_mm) & (mesh.nodes[:, 1] > 1e-3 * from_mm + 1e-9)
+    split = np.intersect1d(np.flatnonzero(on_it), mesh.triangles[rock])
+    copy = np.arange(len(mesh.nodes))
+    copy[split] = len(mesh.nodes) + np.arange(len(split))
+    nodes = np.concatenate([mesh.nodes, mesh.nodes[split]])
+    right = rock & (mesh.centroids()[:, 0] > 1e-3 * x_mm)
+    triangles = mesh.triangles.copy()
+    triangles[right] = copy[triangles[right]]
+    side = np.where(nodes[:, 0] > 1e-3 * x_mm + 1e-9, 1.0, -1.0)
+    side[len(mesh.nodes) :] = 1.0
+    side[np.setdiff1d(np.arange(len(nodes)), mesh.triangles[rock])] = 0.0
+    side[len(mesh.nodes) :] = 1.0
+    height = np.clip((nodes[:, 1] - 1e-3 * from_mm) / (top - 1e-3 * from_mm), 0.0, 1.0)
+    displacement = np.column_stack([0.5e-3 * opening_mm * side * height, -2e-5 * nodes[:, 1] / top])
+    return nodes, displacement, triangles
+
+
+@pytest.fixture
+def make_cracked_run(make_run):
+    """make_cracked_run(name, opening_mm=0.2, cracks=3, **of make_run) -> folder of a discrete run.
+
+    A vertical crack at x = 2 mm grows down from the top of the rock by 1 mm at a time; the first
+    two pieces are tensile, the others compressive dilation.
+    """
+
+    def made(name, opening_mm=0.2, cracks=3, **keys):
+        folder = make_run(name, **keys)
+        mesh = block_mesh()
+        mesh.save(folder / "mesh.npz")
+        history = pd.read_parquet(folder / "history.parquet")
+        end = float(history["time_s"].iloc[-1])
+        nodes, displacement, triangles = opened(mesh, 2.0, 6.0 - cracks, opening_mm)
+        plastic = np.where(np.abs(mesh.centroids()[:, 0] - 2e-3) < 0.5e-3, 0.01, 0.0)
+        zero = np.zeros((len(nodes), 1))
+        grid = meshio.Mesh(
+            np.hstack([nodes, zero]), [("triangle", triangles)],
+            point_data={"displacement_m": np.hstack([displacement, zero])},
+            cell_data={"plastic_strain": [plastic * (mesh.body == 0)], "body": [mesh.body]},
+        )  # fmt: skip
+        (folder / "fields").mkdir()
+        meshio.write(folder / "fields" / "frame_0000.vtu", grid)
+        write_series(folder / "fields.pvd", [(end, "fields/frame_0000.vtu")])
+        n = np.arange(cracks)
+        table = pd.DataFrame(
+            {
+                "time_s": end * (0.4 + 0.1 * n), "step": 1000 * n, "crack": n + 1,
+                "x1_mm": 2.0, "y1_mm": 6.0 - n, "x2_mm": 2.0, "y2_mm": 5.0 - n,
+                "length_mm": 1.0, "direction_deg": 90.0, "failure_factor": 1.0, "agreement": 1.0,
+                "mode": np.where(n < 2, "tensile", "compressive_dilation"),
+                "compressive_share": np.where(n < 2, 0.1, 0.9),
+                "end": np.where(n < cracks - 1, "through", "tip"),
+                "way": "edge", "fallback": n == 1,
+            }
+        )  # fmt: skip
+        table.to_parquet(folder / "cracks.parquet")
+        energy = pd.read_parquet(folder / "energy.parquet")
+        grown = np.clip(energy["time_s"] / end - 0.4, 0.0, None)
+        energy.assign(
+            contact_J=-1e-6 * grown, friction_J=-2e3 * grown, insertion_J=-1e2 * grown,
+            relump_J=1e-2 * grown, reset_J=10.0 * grown,
+        ).to_parquet(folder / "energy.parquet")  # fmt: skip
+        path = folder / "summary.json"
+        more = {
+            "cracks": cracks, "fragments": 1, "crack_length_mm": float(cracks),
+            "crack_fallbacks": 1, "time_step_min_s": 9e-9, "time_step_max_s": 1e-8,
+            "contact_pairs_max": 12, "contact_sweeps_mean": 2.5, "contact_unconverged_steps": 0,
+            "max_penetration_over_h": 1e-9, "core_seconds": 8.25,
+        }  # fmt: skip
+        path.write_text(json.dumps(json.loads(path.read_text()) | more))
         return folder
 
     return made

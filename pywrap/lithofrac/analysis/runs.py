@@ -10,9 +10,11 @@ import numpy as np
 import pandas as pd
 
 from lithofrac.analysis.bench import is_bench
+from lithofrac.analysis.frames import Frame, last_frame
 from lithofrac.analysis.strength import Peak, first_peak
 from lithofrac.config.material import Material
 from lithofrac.config.yaml_file import read_yaml
+from lithofrac.data import DataError
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,26 @@ class Run:
     def energy(self) -> pd.DataFrame:
         """`energy.parquet`."""
         return pd.read_parquet(self.folder / "energy.parquet")
+
+    @property
+    def discrete(self) -> bool:
+        """Whether cracks could open in the run."""
+        return (self.folder / "cracks.parquet").is_file()
+
+    @cached_property
+    def cracks(self) -> pd.DataFrame:
+        """`cracks.parquet`, a row for each opened edge, in the order of opening."""
+        if not self.discrete:
+            raise DataError(
+                f"{self.folder}: holds no cracks.parquet, expected a run with discrete cracks"
+            )
+        table = pd.read_parquet(self.folder / "cracks.parquet")
+        return table.sort_values("time_s", kind="stable", ignore_index=True)
+
+    @cached_property
+    def last_frame(self) -> Frame:
+        """Mesh and fields at the end."""
+        return last_frame(self.folder)
 
     @cached_property
     def rock(self) -> Material:

@@ -6,9 +6,20 @@ from pathlib import Path
 import pandas as pd
 from matplotlib.figure import Figure
 
-from lithofrac.analysis import options, results, tables
+from lithofrac.analysis import discrete, options, results, tables
 from lithofrac.data import DataError
-from lithofrac.plots import energy, gallery, measured, mesh, sandstone, single_element, style
+from lithofrac.plots import (
+    energy,
+    events,
+    fractures,
+    gallery,
+    measured,
+    mesh,
+    punch,
+    sandstone,
+    single_element,
+    style,
+)
 
 FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "single_element": single_element.figure,
@@ -18,6 +29,10 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "mesh": mesh.figure,
     "energy": energy.figure,
     "gallery": gallery.figure,
+    "fractures": fractures.figure,
+    "fracture_series": fractures.series,
+    "events": events.figure,
+    "punch": punch.figure,
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "single_element": tables.single_element,
@@ -29,6 +44,8 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "zigong_fit": tables.zigong_fit,
     "kirsch": tables.kirsch,
     "run_time": tables.run_time,
+    "cracks": discrete.cracks,
+    "bands": discrete.bands,
     "results": results.verdicts,
 }
 FORMATS = (".svg", ".png", ".pdf")

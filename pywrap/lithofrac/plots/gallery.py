@@ -2,15 +2,15 @@
 
 from pathlib import Path
 
-import meshio
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from lithofrac.analysis.runs import Run, find_runs
+from lithofrac.analysis.frames import Frame
+from lithofrac.analysis.runs import find_runs
 from lithofrac.plots import style
-from lithofrac.plots.sandstone import TITLES, draw_curve
+from lithofrac.plots.sandstone import TITLES, draw_curve, kind
 
 
 def figure(inputs: list[Path], data: Path) -> Figure:
@@ -28,13 +28,12 @@ def figure(inputs: list[Path], data: Path) -> Figure:
             [], [], color=colours[run.confinement_MPa], label=f"{run.confinement_MPa:g} MPa"
         )
     curves.set(xlabel="axial strain [%]", ylabel="axial stress [MPa]", xlim=(0, None))
-    curves.set_title(f"sandstone, {TITLES.get(runs[0].test, runs[0].test)}")
+    curves.set_title(f"sandstone, {TITLES[kind(runs[0])]}")
     curves.set_ylim(0, None)
     curves.legend(loc="upper left", title="confinement", handlelength=1.2)
-    fields = [last_frame(run) for run in runs]
-    top = max(float(np.quantile(field.cell_data["plastic_strain"][0], 0.99)) for field in fields)
-    for panel, run, field in zip(specimens, runs, fields, strict=True):
-        drawn_field = draw_plastic_strain(panel, field, max(top, 1e-6))
+    top = max(float(np.quantile(run.last_frame.plastic_strain, 0.99)) for run in runs)
+    for panel, run in zip(specimens, runs, strict=True):
+        drawn_field = draw_plastic_strain(panel, run.last_frame, max(top, 1e-6))
         panel.set_title(f"{run.confinement_MPa:g} MPa", loc="center", fontweight="normal")
     bar = drawn.colorbar(
         drawn_field, ax=specimens, orientation="horizontal", shrink=0.8, pad=0.04, aspect=30
@@ -43,17 +42,11 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     return drawn
 
 
-def last_frame(run: Run) -> meshio.Mesh:
-    """Fields at the end of a run."""
-    return meshio.read(sorted((run.folder / "fields").glob("frame_*.vtu"))[-1])
-
-
-def draw_plastic_strain(axes: Axes, field: meshio.Mesh, top: float) -> PolyCollection:
+def draw_plastic_strain(axes: Axes, frame: Frame, top: float) -> PolyCollection:
     """Draw plastic strain from 0 to `top` on the deformed mesh."""
-    moved = 1e3 * (field.points + field.point_data["displacement_m"])
     drawn = axes.tripcolor(
-        moved[:, 0], moved[:, 1], np.ravel(field.cell_data["plastic_strain"][0]),
-        triangles=field.cells[0].data, cmap="magma_r", vmin=0.0, vmax=top, rasterized=True,
+        *frame.moved().T, frame.plastic_strain, triangles=frame.triangles, cmap="magma_r",
+        vmin=0.0, vmax=top, rasterized=True,
     )  # fmt: skip
     axes.set_aspect("equal")
     axes.set_axis_off()

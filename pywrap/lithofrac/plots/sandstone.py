@@ -15,10 +15,15 @@ from lithofrac.data import Curve, load_curves
 from lithofrac.plots import style
 
 TITLES = {
-    "triaxial": "triaxial, soft pressure",
-    "plane_strain": "plane strain, stiff lateral spring",
-}
+    ("triaxial", False): "triaxial, soft pressure",
+    ("plane_strain", False): "plane strain, soft pressure",
+    ("plane_strain", True): "plane strain, stiff sides",
+}  # test, and whether its lateral faces are stiff
 DEFAULT_STIFFNESS = 0.02  # over Young's modulus: the calibrated value of the plane strain series
+SOFT = (
+    (("triaxial", False), "o", style.BLUE),
+    (("plane_strain", False), "*", style.GREEN),
+)
 SWEEP = (("v", style.ORANGE), ("s", style.RED), ("D", style.PURPLE), ("P", style.SKY))
 SERIES = ("^", "x", "+", "1", "2")  # markers of digitised series
 
@@ -26,12 +31,12 @@ SERIES = ("^", "x", "+", "1", "2")  # markers of digitised series
 def stress_strain(inputs: list[Path], data: Path) -> Figure:
     """Fig. 9: axial stress against axial strain, one panel a test, one curve a confinement."""
     runs = [run for run in find_runs(inputs) if run.stiffness in (0.0, DEFAULT_STIFFNESS)]
-    tests = [test for test in TITLES if any(run.test == test for run in runs)]
+    tests = [test for test in TITLES if any(kind(run) == test for run in runs)]
     digitised = load_curves(data, "9")
     drawn, axes = style.new_figure(1, max(len(tests), 1), height=3.6, sharey=True)
     colours = style.confinement_colours([run.confinement_MPa for run in runs])
     for panel, test in zip(axes.flat, tests, strict=False):
-        own = [run for run in runs if run.test == test]
+        own = [run for run in runs if kind(run) == test]
         for run in own:
             draw_curve(panel, run, colours[run.confinement_MPa])
         for marker, curve in zip(SERIES, _of(digitised, own), strict=False):
@@ -69,8 +74,9 @@ def strength(inputs: list[Path], data: Path) -> Figure:
     stiff = find_bench(inputs, "stiff_confinement")
     draw_line(panel, runs[0].rock, max(one.confinement_MPa for one in [*runs, *stiff]))
     draw_bench(panel, stiff)
-    draw_series(panel, [run for run in runs if run.stiffness == 0.0], "o", style.BLUE,
-                "triaxial, this code")  # fmt: skip
+    for test, marker, colour in SOFT:
+        own = [run for run in runs if kind(run) == test]
+        draw_series(panel, own, marker, colour, f"{TITLES[test]}, this code")
     sweep = sorted({run.stiffness for run in runs if run.stiffness > 0.0})
     for (marker, colour), stiffness in zip(SWEEP, sweep, strict=False):
         own = [run for run in runs if run.stiffness == stiffness]
@@ -96,9 +102,15 @@ def strength(inputs: list[Path], data: Path) -> Figure:
     return drawn
 
 
-def draw_curve(axes: Axes, run: Run, colour) -> None:
+def kind(run: Run) -> tuple[str, bool]:
+    """Test of a run, and whether its lateral faces are stiff; a key of `TITLES`."""
+    return run.test, run.stiffness > 0.0
+
+
+def draw_curve(axes: Axes, run: Run, colour, dash: str = "-") -> None:
     """Draw one run and its peak; strain in %."""
-    axes.plot(100.0 * run.history["axial_strain"], run.history["axial_stress_MPa"], color=colour)
+    strain, stress = 100.0 * run.history["axial_strain"], run.history["axial_stress_MPa"]
+    axes.plot(strain, stress, dash, color=colour)
     if run.peak:
         axes.plot(100.0 * run.peak.strain, run.peak.stress, "o", ms=4, mfc="white", mec=colour)
 

@@ -13,13 +13,14 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap
+from matplotlib.colors import Colormap, ListedColormap
 from matplotlib.figure import Figure
 
 WIDTH = 7.2  # inches, a page's text width
 BLACK, GREY, LIGHT = "#000000", "#6b6b6b", "#d9d9d9"
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 PURPLE, SKY = "#cc79a7", "#56b4e9"
+LIGHT_END = 0.82  # of `viridis`, still visible on white
 
 SETTINGS = {
     "font.family": "DejaVu Sans",
@@ -56,10 +57,15 @@ def new_figure(
     )
 
 
+def dark_to_light() -> Colormap:
+    """`viridis` without its light end, which would be lost on white."""
+    return ListedColormap(plt.get_cmap("viridis")(np.linspace(0.0, LIGHT_END, 256)))
+
+
 def confinement_colours(confinements: list[float]) -> dict[float, tuple]:
     """Dark to light with rising confinement; the light end stays visible on white."""
     levels = sorted(set(confinements))
-    shades = plt.get_cmap("viridis")(np.linspace(0.0, 0.82, max(len(levels), 1)))
+    shades = plt.get_cmap("viridis")(np.linspace(0.0, LIGHT_END, max(len(levels), 1)))
     return {level: tuple(shade) for level, shade in zip(levels, shades, strict=False)}
 
 

@@ -8,6 +8,7 @@ UNITS = {
     "MPa": "MPa",
     "mm": "mm",
     "percent": "%",
+    "deg": "°",
     "seconds": "s",
     "J": "J",
     "J_m2": "J/m²",

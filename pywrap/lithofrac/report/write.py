@@ -14,6 +14,8 @@ from lithofrac.report.markdown import to_html, to_markdown
 SHEETS = Path("reports", "sheets")
 TITLES = {
     "results": "Results",
+    "cracks": "Discrete cracks: what opened and what it cost",
+    "bands": "Angles of bands and cracks to the load axis",
     "errors": "Distance from digitised curves",
     "run_time": "Run time and energy error",
 }  # tables of the whole report, in order; the others stand in the sheets
@@ -22,7 +24,14 @@ FIGURES = {
     "strength.svg": "Strength of sandstone against confinement, compare Fig. 10",
     "measured.svg": "Table 1 beside TauTona quartzite, a fitted line beside Zigong sandstone",
     "sandstone.png": "Where the specimens failed: plastic strain at the end",
+    "punch.svg": "Stress under the strip punch against axial strain, compare Fig. 6",
+    "fracture_series.svg": "Cracks in sandstone blocks under soft pressure, compare Fig. 11",
 }
+CRACKS = {
+    "fractures": "cracks on the deformed mesh, by mode and by time",
+    "events": "stress, and when each crack opened",
+    "energy": "where the energy went",
+}  # figures of each case with discrete cracks, in order
 
 
 def write_report(out_dir: Path, file: Path, sheets: Path = SHEETS) -> None:
@@ -92,10 +101,18 @@ def whole_report(
         if name == "results" and pictures is not None:
             parts += [
                 f"![{alt}]({os.path.relpath(pictures / name, here)})\n\n*{alt}*\n"
-                for name, alt in FIGURES.items()
+                for name, alt in {**FIGURES, **_crack_figures(tables)}.items()
                 if (pictures / name).is_file()
             ]
     return "\n".join(parts)
+
+
+def _crack_figures(tables: dict[str, pd.DataFrame]) -> dict[str, str]:
+    """File -> words, for every case with discrete cracks."""
+    cases = tables["cracks"]["case"] if "cracks" in tables else ()
+    return {
+        f"{kind}_{case}.svg": f"{case}: {alt}" for case in cases for kind, alt in CRACKS.items()
+    }
 
 
 def provenance(tables: dict[str, pd.DataFrame]) -> str:

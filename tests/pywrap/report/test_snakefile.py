@@ -65,17 +65,17 @@ def tree(tmp_path_factory):
     return root
 
 
-def snakemake(root, *arguments):
+def snakemake(root, *arguments, suite="three"):
     environment = dict(os.environ, PATH=f"{root / 'bin'}{os.pathsep}{os.environ['PATH']}")
     return subprocess.run(
-        [sys.executable, "-m", "snakemake", "--config", "suite=configs/three.yaml", *arguments],
+        [sys.executable, "-m", "snakemake", "--config", f"suite=configs/{suite}.yaml", *arguments],
         cwd=root, env=environment, capture_output=True, text=True, timeout=300,
     )  # fmt: skip
 
 
-def planned(root):
+def planned(root, suite="three"):
     """Jobs of a dry run: rule -> count."""
-    done = snakemake(root, "--dry-run")
+    done = snakemake(root, "--dry-run", suite=suite)
     assert done.returncode == 0, done.stderr
     return {rule: int(n) for rule, n in re.findall(r"^(\w+) +(\d+)$", done.stdout, re.MULTILINE)}
 
@@ -141,6 +141,15 @@ def test_bad_suite_stops_before_any_job(tree):
     assert done.returncode != 0
     assert "confinment_MPa" in done.stdout + done.stderr
     edited(suite, "confinment_MPa: 10", "confinement_MPa: 10")
+
+
+def test_comparison_is_drawn_when_the_suite_has_its_cases_and_only_then(tree):
+    text = (tree / "configs" / "three.yaml").read_text()
+    more = "  {}: {{extends: cases/sandstone_plane_strain.yaml}}\n"
+    (tree / "configs" / "four.yaml").write_text(text + more.format("punch_gf60"))
+    jobs = planned(tree, "four")
+    assert (jobs["simulate"], jobs["plot_compared"]) == (1, 1)
+    assert "plot_compared" not in planned(tree)
 
 
 def test_pages_are_filled_when_they_are_asked_for_and_only_then(tree):

@@ -61,6 +61,22 @@ def test_report_shows_the_figures_that_are_there(out):
     assert "stress_strain.svg" not in text
 
 
+def test_report_shows_the_figures_of_each_case_with_cracks(
+    out, make_cracked_run, data_folder, tmp_path
+):
+    runs = [make_cracked_run("sandstone_soft_p00"), make_cracked_run("punch_discrete")]
+    draw("cracks", runs, out / "tables" / "cracks.csv", data_folder)
+    (out / "figures").mkdir()
+    for name in ("events_punch_discrete", "fractures_sandstone_soft_p00", "fractures_of_old"):
+        (out / "figures" / f"{name}.svg").touch()
+    write_report(out, out / "report.md", SHEETS)
+    text = (out / "report.md").read_text()
+    assert "![punch_discrete: stress, and when each crack opened](figures/events_punch_d" in text
+    assert "](figures/fractures_sandstone_soft_p00.svg)" in text
+    assert "fractures_of_old" not in text
+    assert "| sandstone_soft_p00 | - | 3 | 3 | 66.67 | 1 | 1 | -60 |" in text
+
+
 def test_every_sheet_asks_and_answers_the_same_questions():
     for sheet in SHEETS.glob("*.md"):
         text = sheet.read_text()

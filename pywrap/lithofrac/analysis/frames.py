@@ -1,0 +1,84 @@
+"""Fields of a run read back: the mesh at one moment, which grows as cracks open it."""
+
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+from pathlib import Path
+
+import meshio
+import numpy as np
+
+MM = 1e3  # millimetres in a metre
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Mesh and fields at one moment; lengths in mm.
+
+    Attributes
+    ----------
+    time_s : moment
+    nodes : (n, 2) reference positions; copies of a split node share theirs exactly
+    displacement : (n, 2)
+    triangles : (m, 3) node indices; elements that were cut are left out
+    body : (m,) index of the body
+    plastic_strain : (m,) effective plastic strain [-]
+    """
+
+    time_s: float
+    nodes: np.ndarray
+    displacement: np.ndarray
+    triangles: np.ndarray
+    body: np.ndarray
+    plastic_strain: np.ndarray
+
+    @classmethod
+    def load(cls, path: Path, time_s: float) -> "Frame":
+        """Read one `fields/frame_*.vtu`."""
+        grid = meshio.read(path)
+        cells = {name: values[0] for name, values in grid.cell_data.items()}
+        return cls(
+            time_s,
+            MM * grid.points[:, :2],
+            MM * grid.point_data["displacement_m"][:, :2],
+            grid.cells[0].data,
+            np.ravel(cells["body"]),
+            np.ravel(cells["plastic_strain"]),
+        )
+
+    def moved(self, magnification: float = 1.0) -> np.ndarray:
+        """Deformed positions, displacements magnified, (n, 2) [mm]."""
+        return self.nodes + magnification * self.displacement
+
+    def centroids(self) -> np.ndarray:
+        """Element centroids in the reference state, (m, 2) [mm]."""
+        return self.nodes[self.triangles].mean(axis=1)
+
+    def areas(self) -> np.ndarray:
+        """Element areas in the reference state, (m,) [mm2]."""
+        a, b, c = (self.nodes[self.triangles[:, i]] for i in range(3))
+        ab, ac = b - a, c - a
+        return 0.5 * (ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0])
+
+    def boundary(self) -> np.ndarray:
+        """Edges of one triangle only, (k, 2) nodes, material on their left.
+
+        Both faces of a crack are among them, each with nodes of its own.
+        """
+        edges = np.concatenate([self.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+        _, first, count = np.unique(
+            np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True
+        )
+        return edges[np.sort(first[count == 1])]
+
+
+def last_frame(folder: Path) -> Frame:
+    """Fields at the last moment that a run has written, as its `fields.pvd` lists them.
+
+    Raises
+    ------
+    FileNotFoundError
+        When the run has written no fields.
+    """
+    series = ElementTree.parse(folder / "fields.pvd").getroot().iter("DataSet")
+    last = max(series, key=lambda entry: float(entry.get("timestep")))
+    return Frame.load(folder / last.get("file"), float(last.get("timestep")))

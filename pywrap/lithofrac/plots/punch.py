@@ -1,0 +1,58 @@
+"""Strip punch: stress against strain at several fracture energies (Klerck 2004, Fig. 6)."""
+
+from itertools import cycle
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from lithofrac.analysis.runs import Run, find_runs
+from lithofrac.analysis.tables import NOT_DIGITISED
+from lithofrac.data import load_curves
+from lithofrac.plots import style
+from lithofrac.plots.sandstone import SERIES, draw_curve, draw_points
+
+DASHES = ("-", "--", ":")  # continuum by rising fracture energy, told apart in grey as well
+
+
+def figure(inputs: list[Path], data: Path) -> Figure:
+    """Fig. 6a, the continuum and the discrete run; Fig. 6b, tension alone, where it was run."""
+    runs = find_runs(inputs)
+    panels = [
+        ("6a", "compression and tension", [run for run in runs if run.rock.compression]),
+        ("6b", "tension alone", [run for run in runs if not run.rock.compression]),
+    ]
+    panels = [panel for panel in panels if panel[2]]
+    drawn, axes = style.new_figure(1, len(panels), height=4.2)
+    for panel, (number, title, own) in zip(axes[0], panels, strict=True):
+        draw_runs(panel, own)
+        curves = load_curves(data, number)
+        for marker, curve in zip(SERIES, curves, strict=False):
+            draw_points(panel, curve, marker)
+        panel.set(title=title, xlabel="axial strain [%]", ylabel="punch stress [MPa]")
+        panel.set_xlim(0, None)
+        panel.set_ylim(0, 1.45 * panel.get_ylim()[1])  # room for the legend
+        panel.legend(loc="upper left", title="run, Gf: first peak", alignment="left")
+        if not any(curve.sheet.origin == "experiment" for curve in curves):
+            style.badge(panel, NOT_DIGITISED)
+    return drawn
+
+
+def draw_runs(axes: Axes, runs: list[Run]) -> None:
+    """Draw the curves and their first peaks: continuum by fracture energy, discrete in red."""
+    continuum = sorted(
+        (run for run in runs if not run.discrete), key=lambda run: run.rock.fracture_energy
+    )
+    shades = style.confinement_colours([run.rock.fracture_energy for run in continuum])
+    for run, dash in zip(continuum, cycle(DASHES), strict=False):
+        _draw(axes, run, shades[run.rock.fracture_energy], dash, "continuum")
+    for run in runs:
+        if run.discrete:
+            _draw(axes, run, style.RED, "-", "discrete")
+
+
+def _draw(axes: Axes, run: Run, colour, dash: str, kind: str) -> None:
+    draw_curve(axes, run, colour, dash)
+    peak = f"{run.peak.stress:.0f} MPa" if run.peak else "no peak"
+    words = f"{kind}, {run.rock.fracture_energy:g} J/m²: {peak}"
+    axes.plot([], [], dash, color=colour, label=words)
