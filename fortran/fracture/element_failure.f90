@@ -11,7 +11,7 @@ module lithofrac_fracture_element_failure
 
    public :: any_failed, normal_reset, paper_reset, reset_element, set_failure_factors
 
-   integer, parameter :: normal_reset = 0  !! tensile strength across the crack alone
+   integer, parameter :: normal_reset = 0  !! the count of failure across the crack alone
    integer, parameter :: paper_reset = 1   !! all state variables
 
 contains
@@ -69,11 +69,13 @@ contains
       end do
    end subroutine set_failure_factors
 
-   !> Damage of a failed element goes over into the crack. The stress stays as it is: it lies
-   !> inside the regained strength. Energy that was dissipated stays booked.
+   !> Damage of a failed element goes over into the crack. The stress stays as it is. Energy that
+   !> was dissipated stays booked.
    !>
-   !> Choice: `normal_reset` zeroes the plane that softens across the crack and keeps cohesion
-   !> and friction as they are; `paper_reset` is the paper's, which heals those as well.
+   !> Choice: `normal_reset` begins to count anew across the crack and gives no strength back.
+   !> Along an open crack nothing can be pulled; at a tip, where elements still hold both sides
+   !> together, regained strength takes Gf a second time (test_fracture_bars). `paper_reset` is
+   !> the paper's, which heals all state variables.
    pure subroutine reset_element(chunks, element, rock, along, reset, state, regained)
       type(chunks_type), intent(in) :: chunks
       integer, intent(in) :: element
@@ -94,16 +96,15 @@ contains
          + state%axis(lane, 2, chunk)*2.0_wp*along(1)*along(2))
       do plane = 1, merge(3, 2, reset == paper_reset)
          if (reset == normal_reset .and. (plane == 1 .neqv. across >= 0.0_wp)) cycle
+         state%opening(lane, plane, chunk) = 0.0_wp
+         if (reset == normal_reset) cycle
          if (state%softening(lane, chunk) < 0.0_wp) regained = regained + 0.5_wp &
             *(rock%tensile_strength**2 - state%ft(lane, plane, chunk)**2) &
             /(-state%softening(lane, chunk))*chunks%volume(lane, chunk)
          state%ft(lane, plane, chunk) = rock%tensile_strength
-         state%opening(lane, plane, chunk) = 0.0_wp
       end do
-      ! what is left of the sums of eq. 13 is the other plane's
-      state%crack(lane, :, chunk) = state%axis(lane, :, chunk) &
-         *((state%ft(lane, 2, chunk) - state%ft(lane, 1, chunk))/rock%tensile_strength)
       if (reset == normal_reset) return
+      state%crack(lane, :, chunk) = 0.0_wp
       state%plastic_strain(lane, chunk) = 0.0_wp
       state%sin_phi(lane, chunk) = rock%sin_phi0
       state%c_cos_phi(lane, chunk) = rock%c_cos_phi0

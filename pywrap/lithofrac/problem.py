@@ -166,8 +166,8 @@ class Fracture:
     weights : of the non-local averages of eq. 22, "volume" or "failure_factor"
     release_steps : steps over which the traction on a new crack fades; None: twice the way of a
         shear wave along it, at least 20; 0: at once, as in the paper
-    reset : "normal", failed elements regain their tensile strength across the crack alone, or
-        "paper", all their state variables
+    reset : "normal", failed elements count their failure anew across the crack and regain
+        nothing, or "paper", all their state variables
     interval : steps between two failure maps
     """
 

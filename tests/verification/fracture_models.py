@@ -49,7 +49,32 @@ def turned_bar(size, angle, width, height, seed=1, jitter=0.0):
     margin = 0.6 * size
     x, y = inner.T
     kept = (x > margin) & (x < width - margin) & (y > margin) & (y < height - margin)
-    nodes = np.concatenate([_outline(width, height, size), inner[kept]])
+    return _triangulated(np.concatenate([_outline(width, height, size), inner[kept]]), size)
+
+
+def bar_with_row(size, width, height, seed=1, jitter=0.3):
+    """Unstructured but for two straight lines of irregular nodes, `size` apart in the middle.
+
+    A row between them can open without shear, as a smeared crack must; the row that a line cuts
+    out of an unstructured mesh cannot, and spends more than Gf before any crack is inserted.
+    """
+    rng = np.random.default_rng(seed)
+    nodes = turned_bar(size, 0.3, width, height, seed, jitter).nodes
+    nodes = nodes[abs(nodes[:, 1] - height / 2) > 1.05 * size]
+    n = round(width / size)
+    for side, shift in ((-0.5, 0.0), (0.5, 0.5)):
+        x = (np.arange(1, n) + shift + jitter * rng.uniform(-1, 1, n - 1)) * width / n
+        x = x[(x > 0.3 * size) & (x < width - 0.3 * size)]
+        x = np.concatenate([[0.0], x, [width]])
+        nodes = np.concatenate(
+            [nodes, np.column_stack([x, np.full(len(x), height / 2 + side * size)])]
+        )
+    return _triangulated(nodes, size)
+
+
+def _triangulated(nodes, size):
+    """Delaunay mesh of points that fill a rectangle from the origin."""
+    width, height = nodes.max(axis=0)
     triangles = Delaunay(nodes).simplices
     a, b, d = (nodes[triangles[:, k]] for k in range(3))
     area = (b - a)[:, 0] * (d - a)[:, 1] - (b - a)[:, 1] * (d - a)[:, 0]

@@ -26,7 +26,8 @@ class FractureSection(Section):
     """Steps over which the traction on a new crack fades; without it, twice the way of a shear
     wave along the crack; 0 is at once, as in the paper."""
     reset: Literal["normal", "paper"] = "normal"
-    """Failed elements regain their tensile strength across the crack alone, or all their state."""
+    """Failed elements count their failure anew across the crack and keep all else, or regain all
+    their state as in the paper."""
     interval_steps: int = Field(default=1, ge=1, le=1_000_000)
     """Steps from one search for failed nodes to the next."""
 
