@@ -189,7 +189,7 @@ def make_cracked_run(make_run):
         grown = np.clip(energy["time_s"] / end - 0.4, 0.0, None)
         energy.assign(
             contact_J=-1e-6 * grown, friction_J=-2e3 * grown, insertion_J=-1e2 * grown,
-            relump_J=1e-2 * grown, reset_J=10.0 * grown,
+            relump_J=-1e-2 * grown, reset_J=10.0 * grown,
         ).to_parquet(folder / "energy.parquet")  # fmt: skip
         path = folder / "summary.json"
         more = {
