@@ -60,6 +60,11 @@ class Run:
         """Whether cracks could open in the run."""
         return (self.folder / "cracks.parquet").is_file()
 
+    @property
+    def fracture(self) -> str:
+        """How cracks are inserted: off, inter_element or intra_element."""
+        return self.case.get("fracture", {}).get("mode", "off")
+
     @cached_property
     def cracks(self) -> pd.DataFrame:
         """`cracks.parquet`, a row for each opened edge, in the order of opening."""

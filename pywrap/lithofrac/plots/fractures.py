@@ -20,6 +20,8 @@ MODES = {
 }  # value in cracks.parquet -> words, colour
 VISIBLE, LARGEST = 0.005, 0.02  # displacement over extent: magnified below the one, up to the other
 ROUND = np.array([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000])
+BESIDE, ABOVE = 1.2, 1.7  # inches for labels and the bar, for labels and the legend
+TALLEST, NARROWEST = 5.0, 5.2  # inches, of a panel and of the figure
 AROUND = 0.06  # of the extent, shown beside the bodies; what flies further is cut off
 
 
@@ -30,7 +32,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     faces = find_faces(frame, run.cracks)
     times = 1e3 * run.cracks["time_s"].to_numpy()[faces.crack]
     factor = magnification(frame)
-    drawn, axes = style.new_figure(1, 2, height=_height(frame, 2), sharey=True)
+    drawn, axes = style.new_figure(1, 2, **_size(frame, 2), sharey=True)
     by_mode, by_time = axes[0]
     draw_bodies(by_mode, run, frame, faces, factor)
     draw_modes(by_mode, run, frame, faces, factor)
@@ -56,9 +58,7 @@ def series(inputs: list[Path], data: Path) -> Figure:
     """Patterns of several runs at their ends, by mode, side by side."""
     runs = find_runs(inputs)
     frames = [run.last_frame for run in runs]
-    drawn, axes = style.new_figure(
-        1, len(runs), height=max(_height(frame, len(runs)) for frame in frames), sharey=True
-    )
+    drawn, axes = style.new_figure(1, len(runs), **_size(frames[0], len(runs)), sharey=True)
     for panel, run, frame in zip(axes[0], runs, frames, strict=True):
         faces, factor = find_faces(frame, run.cracks), magnification(frame)
         draw_bodies(panel, run, frame, faces, factor)
@@ -160,8 +160,10 @@ def _set_window(axes: Axes, frame: Frame) -> None:
     axes.grid(visible=False)
 
 
-def _height(frame: Frame, columns: int) -> float:
-    """Height [inches] that suits panels of the frame's shape."""
-    width, height = np.ptp(frame.nodes, axis=0)
-    panel = 0.85 * style.WIDTH / columns * height / width
-    return float(np.clip(panel + 1.1, 3.0, 6.5))
+def _size(frame: Frame, columns: int) -> dict[str, float]:
+    """Width and height [inches] of a figure whose panels fill it at the frame's shape."""
+    wide, high = np.ptp(frame.nodes, axis=0)
+    around = 2 * AROUND * max(wide, high)
+    shape = (high + around) / (wide + around)
+    panel = min((style.WIDTH - BESIDE) / columns, TALLEST / shape)
+    return {"width": max(columns * panel + BESIDE, NARROWEST), "height": panel * shape + ABOVE}
