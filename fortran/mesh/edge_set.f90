@@ -69,7 +69,7 @@ contains
       n = 0
       n_source = 0
       deallocate (source)
-      allocate (source(0))
+      allocate (source(0), followed(2, 0))
       do i = 1, size(edge, 2)
          if (topology%alive(edge(1, i))) then
             call append(followed, n, edge(:, i))

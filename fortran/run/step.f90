@@ -121,6 +121,8 @@ contains
          call close_contacts(model, contact_status)
          if (model%fracture%on .and. contact_status%code == ok) then
             call insert_cracks(model, contact_status)
+            failures = [failures, spread(failure_type(), 1, &
+               max(0, model%blocks%n_blocks - size(failures)))]
          end if
          !$omp end single
          if (contact_status%code /= ok) exit

@@ -7,12 +7,15 @@ from typing import Literal
 from pydantic import Field, ValidationError, model_validator
 
 from lithofrac.config.base import MM, Coordinate, Section
-from lithofrac.config.element_count import MOST_ELEMENTS, element_count
+from lithofrac.config.contact import ContactSection
 from lithofrac.config.errors import ConfigError, sentences
-from lithofrac.config.extend import Draft, nested, read_draft
-from lithofrac.config.loading import Loading, TractionLoading, VelocityLoading
+from lithofrac.config.extend import MATERIALS, Draft, nested, read_draft
+from lithofrac.config.fit import misfits
+from lithofrac.config.fracture import FractureSection
+from lithofrac.config.loading import Loading
 from lithofrac.config.material import Material, find_material
-from lithofrac.config.scene import SIZE_KEYS, Scene
+from lithofrac.config.platens import PlatensSection
+from lithofrac.config.scene import Scene
 from lithofrac.config.yaml_file import read_yaml
 
 
@@ -64,6 +67,12 @@ class Case(Section):
     loading: Loading
     damping: DampingSection = DampingSection()
     mesh: MeshSection = MeshSection()
+    platens: PlatensSection | None = None
+    """Bodies that press on the rock; without it, the faces of the rock are moved themselves."""
+    contact: ContactSection | None = None
+    """Friction of all surfaces; without it, parts pass through each other."""
+    fracture: FractureSection = FractureSection()
+    """Discrete cracks, or `off`."""
     time_step_factor: float = Field(default=0.9, ge=1e-6, le=1.0)
     """Time step over the exact limit of the most critical element."""
     probes: dict[str, Probe] = Field(default_factory=dict)
@@ -72,8 +81,7 @@ class Case(Section):
 
     @model_validator(mode="after")
     def _parts_fit_together(self):
-        problems = [*_loading_problems(self.scene, self.loading), *_size_problems(self)]
-        problems += _count_problems(self.scene)
+        problems = misfits(self)
         if problems:
             raise ValueError("\n".join(problems))
         return self
@@ -104,13 +112,15 @@ def load_case(path: Path | str, overrides: Mapping | None = None) -> Case:
 def check_case(draft: Draft) -> Case:
     """Turn merged keys into a case; see `load_case`."""
     problems = []
-    material = draft.values.get("material")
-    if isinstance(material, str) or (isinstance(material, Mapping) and "extends" in material):
-        try:
-            _fill_in_material(draft)
-        except ConfigError as error:
-            problems.append(str(error))
-            draft.values["material"] = _ANY
+    for at in MATERIALS:
+        holder = draft.holder(at)
+        own = holder.get(at[-1])
+        if isinstance(own, str) or (isinstance(own, Mapping) and "extends" in own):
+            try:
+                _fill_in_material(draft, at)
+            except ConfigError as error:
+                problems.append(str(error))
+                holder[at[-1]] = _ANY
     try:
         case = Case.model_validate(draft.values)
     except ValidationError as error:
@@ -123,77 +133,22 @@ def check_case(draft: Draft) -> Case:
 _ANY = Material(elastic=True, young_modulus_GPa=1.0, poisson_ratio=0.0, density_kg_m3=1.0)
 
 
-def _fill_in_material(draft: Draft) -> None:
+def _fill_in_material(draft: Draft, at: tuple) -> None:
     """Put the keys of a named material below those that the case gives itself."""
-    own = draft.values["material"]
+    own = draft.holder(at)[at[-1]]
     own = dict(own) if isinstance(own, Mapping) else {"extends": own}
     name = own.pop("extends")
-    where = draft.file_of(("material", "extends"))
+    where = draft.file_of((*at, "extends"))
     if not isinstance(name, str):
-        raise ConfigError(f"{where}: material.extends: expected a text, the name of a material")
+        key = ".".join((*at, "extends"))
+        raise ConfigError(f"{where}: {key}: expected a text, the name of a material")
     try:
-        path = find_material(name, draft.beside)
+        path = find_material(name, draft.beside[at])
     except ConfigError as error:
         raise ConfigError(f"{where}: {error}") from None
-    files = {key: draft.file_of(("material", key)) for key in own}
-    draft.put({"material": None}, str(path))
-    draft.put({"material": read_yaml(path)}, str(path))
+    files = {key: draft.file_of((*at, key)) for key in own}
+    above = at[:-1]
+    draft.put({at[-1]: None}, str(path), at=above)
+    draft.put({at[-1]: read_yaml(path)}, str(path), at=above)
     for key, value in own.items():
-        draft.put({"material": {key: value}}, files[key])
-
-
-def _loading_problems(scene: Scene, loading: Loading) -> list[str]:
-    """Keys of the loading that the scene has no place for."""
-    kind = scene.kind
-    if isinstance(loading, TractionLoading):
-        if kind in ("hole_quarter", "bar"):
-            return []
-        return [f"loading.kind = traction: the scene {kind} is loaded by velocity only"]
-    assert isinstance(loading, VelocityLoading)
-    problems = []
-    if loading.confinement_MPa > 0 and kind in ("hole_quarter", "bar"):
-        problems.append(
-            f"loading.confinement_MPa = {loading.confinement_MPa:g}: the scene {kind} has no "
-            "confined faces, expected 0"
-        )
-    if loading.lateral_stiffness_over_young > 0 and kind != "plane_strain":
-        problems.append(
-            f"loading.lateral_stiffness_over_young = {loading.lateral_stiffness_over_young:g}: "
-            f"the scene {kind} has no lateral platens, expected 0"
-        )
-    if loading.sense == "stretch" and loading.confinement_MPa > 0:
-        problems.append(
-            "loading.sense = stretch: the ends cannot follow a confinement first, expected shorten"
-        )
-    return problems
-
-
-def _size_problems(case: Case) -> list[str]:
-    """Refuse elements above the limit of unique tension returns, by their nominal size."""
-    nominal = case.scene.element_size
-    width = case.material.band_width_of(0.5 * nominal**2)
-    if width < case.material.band_width_limit:
-        return []
-    key = SIZE_KEYS.get(case.scene.kind, "element_size_mm")
-    return [f"scene.{key} = {getattr(case.scene, key):g}: {too_large(case.material, width)}"]
-
-
-def _count_problems(scene: Scene) -> list[str]:
-    """Refuse meshes that would take hours or all memory, before gmsh is started."""
-    count = element_count(scene)
-    if count <= MOST_ELEMENTS:
-        return []
-    key = "wall_elements_per_radius" if scene.kind == "hole_quarter" else "element_size_mm"
-    return [
-        f"scene.{key} = {getattr(scene, key):g}: about {count:.2g} elements, expected at most "
-        f"{MOST_ELEMENTS}"
-    ]
-
-
-def too_large(material: Material, width: float) -> str:
-    """Why elements of crack band width `width` [m] are refused."""
-    return (
-        f"crack band width {width / MM:.4g} mm of the largest element is not below the limit of "
-        f"{material.band_width_limit / MM:.4g} mm, 2 Gf E / ((1 + nu) ft^2), above which softening "
-        "has no unique answer"
-    )
+        draft.put({at[-1]: {key: value}}, files[key], at=above)

@@ -4,18 +4,29 @@ import math
 
 import numpy as np
 
-from lithofrac.config.scene import HoleQuarter, Scene, SingleElement, Triaxial
+from lithofrac.config.scene import (
+    Brazilian,
+    HoleQuarter,
+    Punch,
+    Scene,
+    SingleElement,
+    Triaxial,
+)
 
 MOST_ELEMENTS = 2_000_000
 SHAPE = 4 / math.sqrt(3)  # elements per squared edge length, of equilateral triangles
 
 
 def element_count(scene: Scene) -> float:
-    """Estimate of the number of elements, good to some ten percent for meshes that are not tiny."""
+    """Estimate of the number of elements of the rock, good to some ten percent unless tiny."""
     if isinstance(scene, SingleElement):
         return 1.0
     if isinstance(scene, HoleQuarter):
         return _around_hole(scene)
+    if isinstance(scene, Punch):
+        return _under_strip(scene)
+    if isinstance(scene, Brazilian):
+        return SHAPE * math.pi * scene.radius**2 / scene.element_size**2
     width, height = _meshed(scene)
     columns, rows = max(1.0, width / scene.element_size), max(1.0, height / scene.element_size)
     return (2.0 if scene.structured else SHAPE) * columns * rows
@@ -37,3 +48,17 @@ def _around_hole(scene: HoleQuarter) -> float:
     rings = np.trapezoid(np.pi / 2 * r / size**2, r)
     corner = (1 - np.pi / 4) * half**2 / far**2
     return SHAPE * float(rings + corner)
+
+
+def _under_strip(scene: Punch) -> float:
+    """Sum over a raster of the block, which is much finer than the size field."""
+    n = 200
+    x = (np.arange(n) + 0.5) / n * scene.width - scene.width / 2
+    depth = (np.arange(n) + 0.5) / n * scene.block_height
+    distance = np.hypot(*np.meshgrid(x, depth))
+    grown = np.clip(
+        (distance - scene.fine_radius) / (scene.block_height - scene.fine_radius), 0.0, 1.0
+    )
+    size = scene.fine_size + grown * (scene.element_size - scene.fine_size)
+    strip = scene.strip_width * (scene.height - scene.block_height) / scene.fine_size**2
+    return SHAPE * float(strip + scene.width * scene.block_height * np.mean(1 / size**2))

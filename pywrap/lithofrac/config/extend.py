@@ -11,6 +11,8 @@ from pathlib import Path
 from lithofrac.config.errors import ConfigError
 from lithofrac.config.yaml_file import read_yaml
 
+MATERIALS = (("material",), ("platens", "material"))  # keys that may hold the name of a material
+
 
 @dataclass
 class Draft:
@@ -21,13 +23,25 @@ class Draft:
     values : the merged keys, without `extends`
     file : the file that was asked for, named where no better one is known
     origin : path of a key -> file it was read from
-    beside : folder of the file that names the material; relative paths start there
+    beside : key of `MATERIALS` -> folder of the file that names the material; relative paths
+        start there
     """
 
     values: dict
     file: str
     origin: dict[tuple, str] = field(default_factory=dict)
-    beside: Path = Path()
+    beside: dict[tuple, Path] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for at in MATERIALS:
+            self.beside.setdefault(at, Path())
+
+    def holder(self, at: tuple) -> dict:
+        """Mapping that holds, or would hold, the key of this path; empty where there is none."""
+        here = self.values
+        for key in at[:-1]:
+            here = here.get(key) if isinstance(here, Mapping) else None
+        return here if isinstance(here, dict) else {}
 
     def file_of(self, keys: tuple) -> str:
         """File that a key, or the nearest one above it, was read from."""
@@ -44,14 +58,14 @@ class Draft:
         for key, value in values.items():
             path = (*at, key)
             old = here.get(key)
-            if path == ("material",) and isinstance(value, Mapping) and isinstance(old, str):
+            if path in MATERIALS and isinstance(value, Mapping) and isinstance(old, str):
                 old = here[key] = {"extends": old}
                 self.origin[(*path, "extends")] = self.file_of(path)
             if isinstance(value, Mapping) and isinstance(old, Mapping) and _same_kind(old, value):
                 self.put(value, file, beside, path)
                 continue
-            if path == ("material",) and beside is not None:
-                self.beside = beside
+            if beside is not None:
+                self.beside |= {at: beside for at in MATERIALS if at[: len(path)] == path}
             self._forget(path)
             here[key] = _copied(value)
             self.origin[path] = file
@@ -73,7 +87,7 @@ def read_draft(path: Path, chain: tuple[Path, ...] = ()) -> Draft:
     """
     values = read_yaml(path)
     parent = values.pop("extends", None)
-    draft = Draft({}, str(path), beside=path.parent)
+    draft = Draft({}, str(path), beside={at: path.parent for at in MATERIALS})
     if parent is not None:
         if not isinstance(parent, str) or not parent:
             raise ConfigError(f"{path}: extends: expected a text, the file that is extended")

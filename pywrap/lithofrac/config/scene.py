@@ -3,9 +3,10 @@
 Lengths are millimetres in the file and metres in the properties, which have no unit in their name.
 """
 
+import math
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from lithofrac.config.base import MM, Length, Section
 
@@ -69,10 +70,16 @@ class Triaxial(Specimen):
 
 
 class PlaneStrain(Specimen):
-    """Prism between two lateral platens, plane strain (Klerck 2004, Fig. 8a)."""
+    """Prism under lateral confinement, plane strain (Klerck 2004, Fig. 8a).
+
+    Without a section `platens:` its ends are on rollers and the lateral stiffness is a spring on
+    its faces; with one, its ends are pressed by platens.
+    """
 
     kind: Literal["plane_strain"]
     width_mm: Length
+    lateral_platens: bool = False
+    """Platens on the lateral faces as well: pressure and spring act on their backs."""
 
     @property
     def width(self) -> float:
@@ -133,8 +140,114 @@ class Bar(Specimen):
         return self.width_mm * MM
 
 
+class Punch(Section):
+    """Square block with a raised strip on top, punched between lateral platens, plane strain.
+
+    Klerck 2004, section 3.1 and Fig. 5: the strip is machined out of the block, so that it is of
+    the same rock. Height and axial strain count from the base to the top of the strip.
+    """
+
+    kind: Literal["punch"]
+    width_mm: Length
+    block_height_mm: Length
+    """Height of the block below the strip."""
+    strip_width_mm: Length
+    strip_height_mm: Length
+    strip_element_size_mm: Length
+    """Nominal edge length in the strip and within `fine_radius_mm` of its foot."""
+    fine_radius_mm: Length
+    element_size_mm: Length
+    """Nominal edge length at a distance of one block height from the strip, and beyond."""
+
+    @model_validator(mode="after")
+    def _strip_fits(self):
+        if self.strip_width_mm >= self.width_mm:
+            raise ValueError(
+                f"strip_width_mm = {self.strip_width_mm:g}: expected below width_mm, "
+                f"{self.width_mm:g}"
+            )
+        if self.fine_radius_mm >= self.block_height_mm:
+            raise ValueError(
+                f"fine_radius_mm = {self.fine_radius_mm:g}: expected below block_height_mm, "
+                f"{self.block_height_mm:g}"
+            )
+        if self.strip_element_size_mm > self.element_size_mm:
+            raise ValueError(
+                f"strip_element_size_mm = {self.strip_element_size_mm:g}: expected not above "
+                f"element_size_mm, {self.element_size_mm:g}"
+            )
+        return self
+
+    @property
+    def width(self) -> float:
+        """Width of the block [m]."""
+        return self.width_mm * MM
+
+    @property
+    def block_height(self) -> float:
+        """Height of the block below the strip [m]."""
+        return self.block_height_mm * MM
+
+    @property
+    def strip_width(self) -> float:
+        """Width of the strip, on which the punch acts [m]."""
+        return self.strip_width_mm * MM
+
+    @property
+    def height(self) -> float:
+        """Height of block and strip [m]."""
+        return (self.block_height_mm + self.strip_height_mm) * MM
+
+    @property
+    def fine_size(self) -> float:
+        """Nominal edge length in and under the strip [m]."""
+        return self.strip_element_size_mm * MM
+
+    @property
+    def fine_radius(self) -> float:
+        """Distance from the foot of the strip up to which elements are small [m]."""
+        return self.fine_radius_mm * MM
+
+    @property
+    def element_size(self) -> float:
+        """Nominal edge length of the largest elements [m]."""
+        return self.element_size_mm * MM
+
+
+class Brazilian(Section):
+    """Disc squeezed between two platens, plane strain; two flats give the platens a hold."""
+
+    kind: Literal["brazilian"]
+    diameter_mm: Length
+    flat_angle_deg: float = Field(ge=1.0, le=40.0)
+    """Angle at the centre that each loaded flat spans."""
+    element_size_mm: Length
+    """Nominal edge length of the elements."""
+
+    @property
+    def radius(self) -> float:
+        """Radius of the disc [m]."""
+        return 0.5 * self.diameter_mm * MM
+
+    @property
+    def flat_width(self) -> float:
+        """Width of each flat [m]."""
+        return 2 * self.radius * math.sin(math.radians(self.flat_angle_deg) / 2)
+
+    @property
+    def height(self) -> float:
+        """Distance of the flats [m]."""
+        return 2 * self.radius * math.cos(math.radians(self.flat_angle_deg) / 2)
+
+    @property
+    def element_size(self) -> float:
+        """Nominal edge length of the elements [m]."""
+        return self.element_size_mm * MM
+
+
 Scene = Annotated[
-    SingleElement | Triaxial | PlaneStrain | HoleQuarter | Bar, Field(discriminator="kind")
+    SingleElement | Triaxial | PlaneStrain | HoleQuarter | Bar | Punch | Brazilian,
+    Field(discriminator="kind"),
 ]
 
 SIZE_KEYS = {

@@ -21,7 +21,13 @@ def schemas() -> dict[str, dict]:
     properties = case["properties"]
     named = {"type": "string", "description": "Name of a material, or path of its file."}
     changed = {"type": "object", "required": ["extends"], "properties": {"extends": named}}
-    properties["material"] = {"anyOf": [named, changed, properties["material"]]}
+    for holder in (properties, case["$defs"]["PlatensSection"]["properties"]):
+        holder["material"] = {"anyOf": [named, changed, holder["material"]]}
+    off = {"enum": ["off", False]}  # the word, as YAML 1.2 and 1.1 read it
+    properties["fracture"] = {"anyOf": [off, properties["fracture"]]}
+    mode = case["$defs"]["FractureSection"]["properties"]["mode"]
+    mode["enum"] = [*mode["enum"], False]
+    del mode["type"]
     properties["extends"] = {"type": "string", "description": "Case file that this one extends."}
     case.pop("required")
     for section in case["$defs"].values():

@@ -1,8 +1,19 @@
 """What every scene fills into its problem in the same way."""
 
 from lithofrac.config.case import Case
+from lithofrac.config.contact import ROCK
 from lithofrac.config.loading import TractionLoading
-from lithofrac.problem import Damping, Measures, Mesh, PressureLoad, Ramp, VelocityLoad
+from lithofrac.problem import (
+    Contact,
+    Damping,
+    Fracture,
+    Measures,
+    Mesh,
+    PressureLoad,
+    Ramp,
+    VelocityLoad,
+)
+from lithofrac.scenes._platens import bodies_of
 from lithofrac.scenes._probes import probes
 from lithofrac.scenes._timing import velocity_timing
 
@@ -11,13 +22,44 @@ def settings(case: Case, mesh: Mesh, points: dict[str, tuple[float, float]]) -> 
     """Keyword arguments of `Problem` that do not depend on the scene."""
     return {
         "mesh": mesh,
-        "materials": (case.material,) * len(mesh.body_names),
+        "materials": tuple(
+            case.material if name == ROCK else case.platens.material for name in mesh.body_names
+        ),
         "damping": Damping(case.damping.fraction, case.damping.alpha_1_s, case.damping.relative_to),
+        "contact": _contact(case, mesh),
+        "fracture": _fracture(case),
         "time_step_factor": case.time_step_factor,
         "probes": probes(case, mesh, points),
         "records": case.output.records,
         "fields": case.output.fields,
     }
+
+
+def _contact(case: Case, mesh: Mesh) -> Contact | None:
+    """Friction by bodies: `platen` stands for all of them but the rock."""
+    if case.contact is None:
+        return None
+    table = {
+        (a, b): friction
+        for (first, second), friction in case.contact.pairs.items()
+        for a in bodies_of(first, mesh)
+        for b in bodies_of(second, mesh)
+    }
+    return Contact(table, case.contact.default_friction)
+
+
+def _fracture(case: Case) -> Fracture | None:
+    """Discrete cracks, where they are on."""
+    section = case.fracture
+    if not section.on:
+        return None
+    return Fracture(
+        section.mode,
+        section.weights,
+        section.release_steps,
+        section.reset,
+        section.interval_steps,
+    )
 
 
 def roller(mesh: Mesh, name: str, component: int) -> VelocityLoad:

@@ -1,10 +1,20 @@
 """Which module makes which kind of scene."""
 
-from lithofrac.config.case import Case, too_large
+from lithofrac.config.case import Case
+from lithofrac.config.contact import ROCK
 from lithofrac.config.errors import ConfigError
+from lithofrac.config.fit import too_large
 from lithofrac.config.scene import SIZE_KEYS
 from lithofrac.problem import Mesh, Problem
-from lithofrac.scenes import bar, hole_quarter, plane_strain, single_element, triaxial
+from lithofrac.scenes import (
+    bar,
+    brazilian,
+    hole_quarter,
+    plane_strain,
+    punch,
+    single_element,
+    triaxial,
+)
 
 SCENES = {
     "single_element": single_element,
@@ -12,6 +22,8 @@ SCENES = {
     "plane_strain": plane_strain,
     "hole_quarter": hole_quarter,
     "bar": bar,
+    "punch": punch,
+    "brazilian": brazilian,
 }
 
 
@@ -36,10 +48,11 @@ def make_problem(case: Case, mesh: Mesh) -> Problem:
     Raises
     ------
     ConfigError
-        When the largest element is above the limit of unique softening (eq. 16).
+        When the largest element of the rock is above the limit of unique softening (eq. 16).
     """
     material = case.material
-    width = float(material.band_width_of(mesh.areas().max()))
+    areas = mesh.areas()[mesh.body == mesh.body_names.index(ROCK)]
+    width = float(material.band_width_of(areas.max()))
     if not width < material.band_width_limit:
         key = SIZE_KEYS.get(case.scene.kind, "element_size_mm")
         value = getattr(case.scene, key)

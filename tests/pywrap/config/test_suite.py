@@ -23,9 +23,27 @@ def test_the_suite_has_the_sandstone_at_all_confinements():
     suite = load_suite(SUITE)
     for p in CONFINEMENTS:
         assert suite.case(f"sandstone_triaxial_p{p:02d}").loading.confinement == p * 1e6
-        for tag, k in (("", 0.02), ("k01_", 0.01), ("k05_", 0.05)):
-            loading = suite.case(f"sandstone_plane_strain_{tag}p{p:02d}").loading
+        for tag, k in (("", 0.02), ("k02_", 0.02), ("k01_", 0.01), ("k05_", 0.05)):
+            case = suite.case(f"sandstone_plane_strain_{tag}p{p:02d}")
+            loading = case.loading
             assert (loading.confinement, loading.lateral_stiffness_over_young) == (p * 1e6, k)
+            assert case.fracture.on == case.scene.lateral_platens == (tag == "")
+        soft = suite.case(f"sandstone_soft_p{p:02d}")
+        assert (soft.loading.confinement, soft.scene.lateral_platens) == (p * 1e6, False)
+        assert soft.fracture.on
+
+
+def test_the_suite_has_the_punch_with_and_without_cracks():
+    suite = load_suite(SUITE)
+    found = {name: suite.case(f"punch_{name}") for name in ("gf60", "gf300", "gf1200")}
+    for name, case in found.items():
+        assert case.material.fracture_energy == float(name.removeprefix("gf"))
+        assert case.contact is not None
+        assert not case.fracture.on
+    discrete, tension = suite.case("punch_discrete"), suite.case("punch_tension_only")
+    assert discrete.fracture.mode == tension.fracture.mode == "inter_element"
+    assert (discrete.material.compression, tension.material.compression) == (True, False)
+    assert discrete.material == found["gf60"].material
 
 
 def test_the_quick_suite_has_every_scene_of_the_suite():
