@@ -51,10 +51,17 @@ def _band(row, limits: pd.Series) -> dict:
     return _row(
         row.case,
         "angle of the shear band to the load axis",
-        computed=f"{row.band_angle_deg:.1f}°" + (f" ({row.note})" if row.note else ""),
+        computed=_angle(row),
         band=expected,
         verdict=verdict(good),
     )
+
+
+def _angle(row) -> str:
+    """Angle of the principal axis, and why it is not that of a band."""
+    if pd.isna(row.band_angle_deg):
+        return row.note
+    return f"{row.band_angle_deg:.1f}°" + (f" ({row.note})" if row.note else "")
 
 
 def _direction(row, limits: pd.Series) -> dict:

@@ -12,9 +12,11 @@ import pandas as pd
 from lithofrac.analysis.bench import is_bench
 from lithofrac.analysis.frames import Frame, last_frame
 from lithofrac.analysis.strength import Peak, first_peak
+from lithofrac.config.contact import ROCK
 from lithofrac.config.material import Material
 from lithofrac.config.yaml_file import read_yaml
 from lithofrac.data import DataError
+from lithofrac.problem import Mesh
 
 
 @dataclass(frozen=True)
@@ -79,6 +81,11 @@ class Run:
     def last_frame(self) -> Frame:
         """Mesh and fields at the end."""
         return last_frame(self.folder)
+
+    def is_rock(self, frame: Frame) -> np.ndarray:
+        """Which elements of a frame of this run are of the specimen, (m,) bool."""
+        names = Mesh.load(self.folder / "mesh.npz").body_names
+        return frame.body == names.index(ROCK)
 
     @cached_property
     def rock(self) -> Material:

@@ -11,7 +11,6 @@ from lithofrac.analysis.crack_faces import Faces, find_faces
 from lithofrac.analysis.frames import Frame
 from lithofrac.analysis.runs import Run, find_runs
 from lithofrac.plots import style
-from lithofrac.problem import Mesh
 
 ROCK, OTHER = "#f2ead9", "#c9ccd0"
 MODES = {
@@ -96,8 +95,7 @@ def scale(factor: float) -> str:
 def draw_bodies(axes: Axes, run: Run, frame: Frame, faces: Faces, factor: float) -> None:
     """Draw the deformed bodies, rock tinted and all others neutral, with their outline."""
     moved = frame.moved(factor)
-    names = Mesh.load(run.folder / "mesh.npz").body_names
-    rock = np.array([name == "rock" for name in names])[frame.body]
+    rock = run.is_rock(frame)
     for chosen, colour in ((rock, ROCK), (~rock, OTHER)):
         axes.add_collection(
             PolyCollection(

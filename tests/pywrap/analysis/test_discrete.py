@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 from lithofrac.analysis import discrete
+from lithofrac.analysis.bands import Band
 from lithofrac.analysis.discrete_results import discrete_rows
 from lithofrac.analysis.runs import Run
 from lithofrac.data import DataError
@@ -118,6 +119,19 @@ def test_vertical_band_holds_without_confinement_and_fails_with(make_block, data
     assert rows["soft_p10", "angle"]["verdict"] == "does not hold"
     assert rows["soft_p10", "angle"]["band"] == "20° to 40°"
     assert rows["soft_p10", "share"]["verdict"] == "holds"
+
+
+def test_angle_that_is_not_that_of_a_band_says_why(make_block, monkeypatch, data_folder, limits):
+    def computed(band):
+        monkeypatch.setattr(discrete, "find_band", lambda frame: band)
+        return verdicts([block], data_folder, limits)["soft_p10", "angle"]
+
+    block, nan = make_block("soft_p10", 10.0), float("nan")
+    assert computed(Band(30.0, 9.0, 0.1))["verdict"] == "holds"
+    crossing = computed(Band(30.0, 2.0, 0.1))
+    assert crossing["computed"] == "30.0° (no band, no single axis)"
+    assert crossing["verdict"] == "does not hold"
+    assert computed(Band(nan, nan, nan))["computed"] == "no band, no plastic strain"
 
 
 def test_stiff_blocks_and_other_scenes_are_measured_without_a_verdict(
