@@ -36,7 +36,7 @@ TABLES = {
     **{"zigong": [], "zigong_fit": []},
     "kirsch": [run for run in RUNS if "/kirsch" in run],
     "run_time": RUNS,
-    **{"cracks": RUNS, "bands": RUNS},
+    **{"cracks": RUNS, "bands": RUNS, "punch": RUNS},
 }
 COMPARED = {
     "punch": [run for run in RUNS if "/punch_" in run],
