@@ -50,10 +50,13 @@ class Frame:
         return self.nodes + magnification * self.displacement
 
     def part(self, chosen: np.ndarray) -> "Frame":
-        """The same with a choice of its elements, (m,) bool, and all nodes."""
+        """The same with a choice of its elements, (m,) bool, and the nodes that they use."""
+        used, triangles = np.unique(self.triangles[chosen], return_inverse=True)
         return replace(
             self,
-            triangles=self.triangles[chosen],
+            nodes=self.nodes[used],
+            displacement=self.displacement[used],
+            triangles=triangles.reshape(-1, 3),
             body=self.body[chosen],
             plastic_strain=self.plastic_strain[chosen],
         )

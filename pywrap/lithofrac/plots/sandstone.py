@@ -35,18 +35,15 @@ def stress_strain(inputs: list[Path], data: Path) -> Figure:
     """Fig. 9: axial stress against axial strain, one panel a test, one curve a confinement."""
     runs = [run for run in find_runs(inputs) if run.stiffness in (0.0, DEFAULT_STIFFNESS)]
     tests = [test for test in TITLES if any(kind(run) == test for run in runs)]
+    mixed = len({run.discrete for run in runs}) == 2
     digitised = load_curves(data, "9")
     drawn, axes = style.new_figure(1, max(len(tests), 1), height=3.6, sharey=True)
     colours = style.confinement_colours([run.confinement_MPa for run in runs])
     for panel, test in zip(axes.flat, tests, strict=False):
         own = [run for run in runs if kind(run) == test]
-        both = len({run.discrete for run in own}) == 2
         for run in own:
-            dash = "--" if both and not run.discrete else "-"
+            dash = "--" if mixed and not run.discrete else "-"
             draw_curve(panel, run, colours[run.confinement_MPa], dash)
-        if both:
-            for dash, words in (("-", "discrete cracks"), ("--", "continuum")):
-                panel.plot([], [], dash, color=style.GREY, label=words)
         for marker, curve in zip(SERIES, _of(digitised, own), strict=False):
             draw_points(panel, curve, marker)
         panel.set(title=TITLES[test], xlabel="axial strain [%]", xlim=(0, None), ylim=(0, None))
@@ -61,11 +58,13 @@ def stress_strain(inputs: list[Path], data: Path) -> Figure:
         axes[0, 0].plot([], [], color=colour, label=f"{level:g}")[0]
         for level, colour in colours.items()
     ]
-    mark = axes[0, 0].plot([], [], "o", ms=4, mfc="white", mec=style.BLACK, label="peak")[0]
+    handles += axes[0, 0].plot([], [], "o", ms=4, mfc="white", mec=style.BLACK, label="peak")
+    for dash, words in (("-", "discrete"), ("--", "continuum")) if mixed else ():
+        handles += axes[0, 0].plot([], [], dash, color=style.BLACK, label=words)
     drawn.legend(
-        handles=[*handles, mark],
+        handles=handles,
         loc="outside upper center",
-        ncols=len(handles) + 1,
+        ncols=len(handles),
         title="confinement [MPa]",
     )
     return drawn
