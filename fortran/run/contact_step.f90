@@ -94,7 +94,7 @@ contains
          else
             slip = 0.5_wp*(before + fields%v(:, node))
          end if
-         drag = -model%alpha(body)*fields%free_mass(:, node)*slip
+         drag = -model%alpha(body)*fields%drag_mass(:, node)*slip
          sums(3) = sums(3) + drag(1)*change(1) + drag(2)*change(2)
       end associate
    end subroutine correct_sums
