@@ -24,7 +24,10 @@ SOFT = (
     (("triaxial", False), "o", style.BLUE),
     (("plane_strain", False), "*", style.GREEN),
 )
-SWEEP = (("v", style.ORANGE), ("s", style.RED), ("D", style.PURPLE), ("P", style.SKY))
+SWEEP = (
+    ("v", style.ORANGE), ("s", style.RED), ("D", style.PURPLE), ("P", style.SKY),
+    ("<", style.BLACK),
+)  # fmt: skip
 SERIES = ("^", "x", "+", "1", "2")  # markers of digitised series
 
 
@@ -37,8 +40,13 @@ def stress_strain(inputs: list[Path], data: Path) -> Figure:
     colours = style.confinement_colours([run.confinement_MPa for run in runs])
     for panel, test in zip(axes.flat, tests, strict=False):
         own = [run for run in runs if kind(run) == test]
+        both = len({run.discrete for run in own}) == 2
         for run in own:
-            draw_curve(panel, run, colours[run.confinement_MPa])
+            dash = "--" if both and not run.discrete else "-"
+            draw_curve(panel, run, colours[run.confinement_MPa], dash)
+        if both:
+            for dash, words in (("-", "discrete cracks"), ("--", "continuum")):
+                panel.plot([], [], dash, color=style.GREY, label=words)
         for marker, curve in zip(SERIES, _of(digitised, own), strict=False):
             draw_points(panel, curve, marker)
         panel.set(title=TITLES[test], xlabel="axial strain [%]", xlim=(0, None), ylim=(0, None))
@@ -76,12 +84,12 @@ def strength(inputs: list[Path], data: Path) -> Figure:
     draw_bench(panel, stiff)
     for test, marker, colour in SOFT:
         own = [run for run in runs if kind(run) == test]
-        draw_series(panel, own, marker, colour, f"{TITLES[test]}, this code")
-    sweep = sorted({run.stiffness for run in runs if run.stiffness > 0.0})
-    for (marker, colour), stiffness in zip(SWEEP, sweep, strict=False):
-        own = [run for run in runs if run.stiffness == stiffness]
-        label = f"plane strain, k = {stiffness:g} E, this code"
-        draw_series(panel, own, marker, colour, label)
+        draw_series(panel, own, marker, colour, TITLES[test])
+    sweep = sorted({(run.stiffness, run.discrete) for run in runs if run.stiffness > 0.0})
+    for (marker, colour), (stiffness, discrete) in zip(SWEEP, sweep, strict=False):
+        own = [run for run in runs if (run.stiffness, run.discrete) == (stiffness, discrete)]
+        words = ", discrete" if discrete else ""
+        draw_series(panel, own, marker, colour, f"plane strain, k = {stiffness:g} E{words}")
     digitised = load_curves(data, "10")
     for marker, curve in zip(SERIES, digitised, strict=False):
         panel.errorbar(
