@@ -12,31 +12,32 @@ module lithofrac_contact_pairs
    implicit none
    private
 
-   public :: corner_pair, corner_reach, edge_pair, feasible_bias, pair_type
+   public :: corner_pair, corner_reach, edge_pair, pair_type
 
    real(wp), parameter :: reach = 0.1_wp          !! gaps beyond it are left out, over h
    real(wp), parameter :: depth = 0.01_wp         !! deeper is not behind this face, over h
    real(wp), parameter :: corner_reach = 0.02_wp  !! two nodes make a corner within it, over h
    real(wp), parameter :: inside = 1.0e-6_wp      !! a node is over an edge from here on
-   real(wp), parameter :: slop = 1.0e-6_wp        !! penetration left alone, over h
-   real(wp), parameter :: recovery = 0.2_wp       !! of a deeper one, in a critical step
-   real(wp), parameter :: push = 1.0e-4_wp        !! largest recovery in a critical step, over h
    real(wp), parameter :: separate = 1.0e-9_wp    !! a normal separates above minus this, over h
    real(wp), parameter :: largest_share = 0.5_wp  !! of a reaction on a corner's neighbours
    real(wp), parameter :: turned = 1.0e-3_wp      !! faces closer than this are one plane [rad]
 
    !> One pair; kept together because a sweep reads all of it and nothing else.
    type :: pair_type
-      integer :: n_nodes = 3
-      integer :: node(4) = 0                  !! boundary nodes
+      integer :: node(4) = 0                  !! boundary nodes; without weight where not needed
+      integer :: n_nodes = 3                  !! 3 or 4
       integer :: n_faces = 0                  !! 0: not a pair of now
       integer :: candidate = 0                !! corner when positive, node and edge when negative
+      integer :: visit = 0                    !! when it was solved last, counted in this step
       real(wp) :: weight(4) = 0.0_wp          !! relative velocity is sum(weight*v)
       real(wp) :: normal(2, 2) = 0.0_wp       !! (component, face), unit
       real(wp) :: gap(2) = 0.0_wp             !! [m]
       real(wp) :: bias(2) = 0.0_wp            !! [m/s]
       real(wp) :: friction = 0.0_wp
+      real(wp) :: turn = 0.0_wp               !! sign of the turn from normal 1 to 2, 0 for one face
       real(wp) :: compliance(2) = 0.0_wp      !! [1/kg]
+      real(wp) :: stiffness(2) = 0.0_wp       !! its inverse [kg]
+      real(wp) :: rest(2) = 0.0_wp            !! relative velocity that just closes all faces [m/s]
       real(wp) :: impulse(2) = 0.0_wp         !! of this step [N s]
    end type pair_type
 
@@ -49,24 +50,32 @@ contains
       integer, intent(in) :: j
       type(pair_type), intent(inout) :: pair   !! `n_faces` 0 when they cannot touch now
 
-      real(wp) :: arm(2), share, gap
+      real(wp) :: x, y, share, gap
 
       pair%n_faces = 0
-      arm = (surfaces%reference(:, i) - surfaces%reference(:, j)) &
-         + (surfaces%u(:, i) - surfaces%u(:, j))
+      x = (surfaces%reference(1, i) - surfaces%reference(1, j)) + (surfaces%u(1, i) &
+         - surfaces%u(1, j))
+      y = (surfaces%reference(2, i) - surfaces%reference(2, j)) + (surfaces%u(2, i) &
+         - surfaces%u(2, j))
       associate (tangent => surfaces%tangent(:, j), h => surfaces%h)
-         gap = arm(1)*tangent(2) - arm(2)*tangent(1)
+         gap = x*tangent(2) - y*tangent(1)
          if (.not. (gap >= -depth*h .and. gap <= reach*h)) return
-         share = dot_product(arm, tangent)/surfaces%length(j)
+         share = (x*tangent(1) + y*tangent(2))/surfaces%length(j)
          if (share < inside .or. share > 1.0_wp - inside) return
          if (gap < 0.0_wp) then
             if (is_outside_neighbour(surfaces, i, j, gap)) return
          end if
          pair%n_faces = 1
          pair%n_nodes = 3
-         pair%node(:3) = [i, j, surfaces%next(j)]
-         pair%weight(:3) = [1.0_wp, share - 1.0_wp, -share]
-         pair%normal(:, 1) = [tangent(2), -tangent(1)]
+         pair%node(1) = i
+         pair%node(2) = j
+         pair%node(3) = surfaces%next(j)
+         pair%node(4) = j
+         pair%weight(1) = 1.0_wp
+         pair%weight(2) = share - 1.0_wp
+         pair%weight(3) = -share
+         pair%normal(1, 1) = tangent(2)
+         pair%normal(2, 1) = -tangent(1)
          pair%gap(1) = gap
       end associate
    end subroutine edge_pair
@@ -255,9 +264,9 @@ contains
       pair%n_faces = 1
       pair%normal(:, 1) = normal
       pair%gap(1) = gap
-      pair%n_nodes = merge(2, 3, face == 0)
-      pair%node(:2) = [i, k]
-      pair%weight(:2) = [1.0_wp, -1.0_wp]
+      pair%n_nodes = 3
+      pair%node = [i, k, k, k]
+      pair%weight(:3) = [1.0_wp, -1.0_wp, 0.0_wp]
       if (face == 0) return
       edge = edge_of(surfaces, i, k, face)
       associate (t => surfaces%tangent(:, edge))
@@ -295,12 +304,12 @@ contains
       integer :: corner
 
       pair%n_faces = 2
-      pair%n_nodes = 2
-      pair%node(:2) = [i, k]
-      pair%weight(:2) = [1.0_wp, -1.0_wp]
-      if (all(face == [before_second, after_second])) then
+      pair%n_nodes = 3
+      pair%node = [i, k, k, k]
+      pair%weight(:3) = [1.0_wp, -1.0_wp, 0.0_wp]
+      if (face(1) == before_second .and. face(2) == after_second) then
          corner = k
-      else if (all(face == [before_first, after_first])) then
+      else if (face(1) == before_first .and. face(2) == after_first) then
          corner = i
       else
          return
@@ -316,23 +325,5 @@ contains
       pair%weight(merge(1, 2, corner == i)) = pair%weight(merge(1, 2, corner == i)) + sum(share)
       pair%weight(3:4) = -share
    end subroutine stand_at_two_faces
-
-   !> Speed that a closed gap may still have [m/s].
-   !>
-   !> A tiny penetration asks for no recovery, so standing still is always a solution; a deeper
-   !> one is taken back gently, without a kick, as fast at any step.
-   pure function feasible_bias(gap, h, dt, critical) result(bias)
-      real(wp), intent(in) :: gap   !! [m]
-      real(wp), intent(in) :: h     !! shortest edge [m]
-      real(wp), intent(in) :: dt    !! [s]
-      real(wp), intent(in) :: critical  !! largest stable step, the time scale of recovery [s]
-      real(wp) :: bias
-
-      if (gap >= 0.0_wp) then
-         bias = gap/dt
-      else
-         bias = max(min(0.0_wp, recovery*(gap + slop*h)), -push*h)/critical
-      end if
-   end function feasible_bias
 
 end module lithofrac_contact_pairs
