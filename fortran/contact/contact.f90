@@ -5,6 +5,7 @@ module lithofrac_contact_contact
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: bad_input, ok, set_failure, status_type
    use lithofrac_contact_corners, only: classify
+   use lithofrac_contact_multipliers, only: queue_type
    use lithofrac_contact_pairs, only: pair_type
    use lithofrac_contact_search, only: candidates_type, list_candidates
    use lithofrac_contact_surfaces, only: new_surfaces, surfaces_type
@@ -45,7 +46,7 @@ module lithofrac_contact_contact
       integer, allocatable :: edge_order(:)        !! node-edge pairs by their corner, 0 for none
       integer, allocatable :: keeper(:)            !! (0:n_corners) who keeps the two nodes apart
       integer, allocatable :: beside(:)            !! (n) corner pairs of a node in this step
-      integer, allocatable :: woken(:)             !! (n) visit that changed a node's velocity
+      type(queue_type) :: queue
       real(wp), allocatable :: inverse_mass(:, :)  !! (2, n) [1/kg]
       real(wp), allocatable :: before(:, :)        !! (2, n) velocity at the half step before [m/s]
       real(wp), allocatable :: v(:, :)             !! (2, n) and after it [m/s]
@@ -80,7 +81,7 @@ contains
       associate (n => contact%surfaces%n)
          allocate (contact%inverse_mass(2, n), contact%before(2, n), source=0.0_wp)
          allocate (contact%v(2, n), contact%impulse(2, n), source=0.0_wp)
-         allocate (contact%beside(n), contact%woken(n), source=0)
+         allocate (contact%beside(n), contact%queue%newest(n), source=0)
       end associate
       contact%tangent = contact%surfaces%tangent
       contact%candidates%u = contact%surfaces%u
@@ -122,12 +123,13 @@ contains
       if (allocated(contact%kind)) then
          deallocate (contact%kind, contact%face, contact%pairs)
          deallocate (contact%neighbours, contact%corner_friction, contact%edge_friction)
-         deallocate (contact%keeper, contact%first_edge)
+         deallocate (contact%keeper, contact%first_edge, contact%queue%next, contact%queue%now)
       end if
       allocate (contact%kind(n_corners), contact%face(2, n_corners))
       allocate (contact%neighbours(n_corners))
       allocate (contact%corner_friction(n_corners), contact%edge_friction(n_edges))
       allocate (contact%pairs(n_corners + n_edges + 1))
+      allocate (contact%queue%next(n_corners + n_edges), contact%queue%now(n_corners + n_edges))
       allocate (contact%keeper(0:n_corners), contact%first_edge(0:n_corners + 1))
       contact%corner_impulse = spread([0.0_wp, 0.0_wp], 2, n_corners)
       contact%edge_impulse = spread([0.0_wp, 0.0_wp], 2, n_edges)

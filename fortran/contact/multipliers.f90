@@ -1,8 +1,8 @@
 !> Block Gauss-Seidel over pairs: every pair is solved exactly in turn, until none changes.
 !>
-!> Sweeps go forward and backward in turn and start from the impulses of the step before. After
-!> the first sweep only those pairs are solved again whose nodes another pair has moved since.
-!> The order of the pairs alone decides the bits of the result.
+!> Starts from the impulses of the step before. The first sweep solves every pair, each later one
+!> only those whose nodes another pair has moved since, in the opposite direction to the sweep
+!> before. The order of the pairs alone decides the bits of the result.
 module lithofrac_contact_multipliers
    use lithofrac_base_kinds, only: wp
    use lithofrac_contact_friction, only: one_face, two_faces
@@ -10,71 +10,120 @@ module lithofrac_contact_multipliers
    implicit none
    private
 
-   public :: solve_pairs
+   public :: queue_type, solve_pairs
+
+   !> Room to remember which pairs have to be solved again.
+   type :: queue_type
+      integer, allocatable :: newest(:)   !! (n) 4*pair + place, last pair of a boundary node
+      integer, allocatable :: next(:)     !! pairs of the sweep to come
+      integer, allocatable :: now(:)      !! pairs of this sweep
+   end type queue_type
 
 contains
 
    !> Find the impulses; velocities come out with them.
-   pure subroutine solve_pairs(pairs, inverse_mass, tolerance, most_sweeps, v, woken, sweeps, &
+   pure subroutine solve_pairs(pairs, inverse_mass, tolerance, most_sweeps, v, queue, sweeps, &
          converged)
       type(pair_type), intent(inout), contiguous :: pairs(:)  !! `impulse` a guess, the solution
       real(wp), intent(in), contiguous :: inverse_mass(:, :)  !! (2, n) [1/kg]
       real(wp), intent(in) :: tolerance             !! change of a relative velocity [m/s]
       integer, intent(in) :: most_sweeps
       real(wp), intent(inout), contiguous :: v(:, :)  !! (2, n) without contact, then with [m/s]
-      integer, intent(inout), contiguous :: woken(:)  !! (n) scratch: visit that moved a node
+      type(queue_type), intent(inout) :: queue
       integer, intent(out) :: sweeps
       logical, intent(out) :: converged
 
-      integer :: i, k, visit
+      integer :: i, k, first, last
+      logical :: moved
 
+      call link_pairs(pairs, queue%newest)
       do i = 1, size(pairs)
-         woken(pairs(i)%node) = 0
          call add_impulse(pairs(i), pairs(i)%impulse(1), pairs(i)%impulse(2), inverse_mass, v)
       end do
-      visit = 0
-      do sweeps = 1, most_sweeps
-         converged = .true.
-         do k = 1, size(pairs)
-            i = merge(k, size(pairs) + 1 - k, modulo(sweeps, 2) == 1)
-            associate (pair => pairs(i))
-               if (sweeps > 1 .and. max(max(woken(pair%node(1)), woken(pair%node(2))), &
-                  max(woken(pair%node(3)), woken(pair%node(4)))) <= pair%visit) cycle
-               visit = visit + 1
-               pair%visit = visit
-               call visit_pair(pair, inverse_mass, tolerance, v, woken, converged)
-            end associate
-         end do
-         if (converged) return
+      last = 0
+      do i = 1, size(pairs)
+         call visit_pair(pairs(i), inverse_mass, tolerance, v, moved)
+         if (moved) call wake(pairs, i, i - 1, queue, last)
       end do
-      sweeps = most_sweeps
+      do sweeps = 1, most_sweeps
+         converged = last == 0
+         if (converged) return
+         first = last
+         queue%now(:last) = queue%next(:last)
+         last = 0
+         do k = first, 1, -1
+            i = queue%now(k)
+            pairs(i)%is_queued = .false.
+            call visit_pair(pairs(i), inverse_mass, tolerance, v, moved)
+            if (moved) call wake(pairs, i, size(pairs), queue, last)
+         end do
+      end do
    end subroutine solve_pairs
 
-   !> Solve one pair; tell its nodes if that has moved them.
-   pure subroutine visit_pair(pair, inverse_mass, tolerance, v, woken, converged)
+   !> Chain the pairs of every node, newest first.
+   pure subroutine link_pairs(pairs, newest)
+      type(pair_type), intent(inout), contiguous :: pairs(:)
+      integer, intent(inout), contiguous :: newest(:)   !! (n) 4*pair + place of the node in it
+
+      integer :: i, k
+
+      do i = 1, size(pairs)
+         do k = 1, 4
+            newest(pairs(i)%node(k)) = 0
+         end do
+      end do
+      do i = 1, size(pairs)
+         pairs(i)%is_queued = .false.
+         do k = 1, pairs(i)%n_nodes
+            pairs(i)%older(k) = newest(pairs(i)%node(k))
+            newest(pairs(i)%node(k)) = 4*i + k - 1
+         end do
+      end do
+   end subroutine link_pairs
+
+   !> Queue the pairs that share a node with pair `i`, up to number `last_pair`.
+   pure subroutine wake(pairs, i, last_pair, queue, n)
+      type(pair_type), intent(inout), contiguous :: pairs(:)
+      integer, intent(in) :: i
+      integer, intent(in) :: last_pair      !! those behind it are still to be visited
+      type(queue_type), intent(inout) :: queue
+      integer, intent(inout) :: n           !! pairs in the queue
+
+      integer :: k, entry, other
+
+      do k = 1, pairs(i)%n_nodes
+         entry = queue%newest(pairs(i)%node(k))
+         do while (entry > 0)
+            other = entry/4
+            entry = pairs(other)%older(modulo(entry, 4) + 1)
+            if (other > last_pair .or. other == i .or. pairs(other)%is_queued) cycle
+            pairs(other)%is_queued = .true.
+            n = n + 1
+            queue%next(n) = other
+         end do
+      end do
+   end subroutine wake
+
+   !> Solve one pair; tell if that has moved its nodes.
+   pure subroutine visit_pair(pair, inverse_mass, tolerance, v, moved)
       type(pair_type), intent(inout) :: pair
       real(wp), intent(in), contiguous :: inverse_mass(:, :)
       real(wp), intent(in) :: tolerance
       real(wp), intent(inout), contiguous :: v(:, :)
-      integer, intent(inout), contiguous :: woken(:)
-      logical, intent(inout) :: converged
+      logical, intent(out) :: moved
 
       real(wp) :: p(2), change(2)
 
       call solve_pair(pair, v, p)
       change(1) = p(1) - pair%impulse(1)
       change(2) = p(2) - pair%impulse(2)
+      moved = .false.
       if (.not. max(abs(change(1)), abs(change(2))) > 0.0_wp) return
       pair%impulse(1) = p(1)
       pair%impulse(2) = p(2)
       call add_impulse(pair, change(1), change(2), inverse_mass, v)
-      if (max(abs(change(1))*pair%compliance(1), abs(change(2))*pair%compliance(2)) &
-         <= tolerance) return
-      converged = .false.
-      woken(pair%node(1)) = pair%visit
-      woken(pair%node(2)) = pair%visit
-      woken(pair%node(3)) = pair%visit
-      woken(pair%node(4)) = pair%visit
+      moved = max(abs(change(1))*pair%compliance(1), abs(change(2))*pair%compliance(2)) &
+         > tolerance
    end subroutine visit_pair
 
    !> Impulse of one pair when all others keep theirs.

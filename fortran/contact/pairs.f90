@@ -28,7 +28,8 @@ module lithofrac_contact_pairs
       integer :: n_nodes = 3                  !! 3 or 4
       integer :: n_faces = 0                  !! 0: not a pair of now
       integer :: candidate = 0                !! corner when positive, node and edge when negative
-      integer :: visit = 0                    !! when it was solved last, counted in this step
+      integer :: older(4) = 0                 !! pair before it of each node, see `multipliers`
+      logical :: is_queued = .false.          !! has to be solved again
       real(wp) :: weight(4) = 0.0_wp          !! relative velocity is sum(weight*v)
       real(wp) :: normal(2, 2) = 0.0_wp       !! (component, face), unit
       real(wp) :: gap(2) = 0.0_wp             !! [m]

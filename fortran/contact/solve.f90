@@ -26,7 +26,7 @@ module lithofrac_contact_solve
    integer, parameter :: usual_sweeps = 50
    integer, parameter :: many_sweeps = 200
    real(wp), parameter :: deep = 1.0e-4_wp         !! penetration that asks for many sweeps, over h
-   real(wp), parameter :: accuracy = 1.0e-3_wp     !! of the largest relative velocity
+   real(wp), parameter :: accuracy = 2.5e-4_wp     !! of the largest relative velocity
    real(wp), parameter :: fine = 1.0e-7_wp         !! gap that no sweep is worth, over h
    real(wp), parameter :: longest_way = 0.05_wp    !! of a pair in a step, over h
 
@@ -87,7 +87,7 @@ contains
       associate (pairs => contact%pairs(:contact%n_pairs), h => contact%surfaces%h)
          call solve_pairs(pairs, contact%inverse_mass, max(accuracy*contact%fastest, fine*h/dt), &
             merge(many_sweeps, usual_sweeps, contact%deepest > deep*h), contact%v, &
-            contact%woken, sweeps, converged)
+            contact%queue, sweeps, converged)
          contact%fastest = 0.0_wp
          do i = 1, contact%n_pairs
             call book_pair(contact, pairs(i))
