@@ -6,7 +6,8 @@ module lithofrac_contact_collect
    use lithofrac_base_kinds, only: wp
    use lithofrac_contact_contact, only: contact_type
    use lithofrac_contact_corners, only: no_corner
-   use lithofrac_contact_pairs, only: corner_pair, corner_reach, edge_pair, pair_type
+   use lithofrac_contact_pairs, only: corner_pair, corner_reach, edge_pair, motion_type, &
+      pair_type
    implicit none
    private
 
@@ -21,7 +22,7 @@ module lithofrac_contact_collect
    real(wp), parameter :: rigid = 1.0e-8_wp        !! compliance along a normal that is none
    real(wp), parameter :: floor = 1.0e-9_wp        !! of a compliance, over the other component
    real(wp), parameter :: meeting = 1.0e-6_wp      !! overlap of prescribed bodies, over h
-   real(wp), parameter :: parallel = 1.0e-9_wp     !! two normals that are one
+   real(wp), parameter :: parallel = 1.0e-9_wp     !! sine of the angle of normals that are one
 
    ! Who keeps the two nodes of a corner apart.
    integer, parameter :: nobody = 0
@@ -85,7 +86,9 @@ contains
       logical, intent(inout) :: collides
 
       integer :: i, k, m
+      real(wp) :: gap(2)
 
+      gap = 0.0_wp
       associate (list => contact%candidates, keeper => contact%keeper)
          do k = 0, size(contact%kind)
             if (keeper(k) == corner) cycle
@@ -94,14 +97,15 @@ contains
                associate (one => list%corner_at(1, i), other => list%corner_at(2, i))
                   if (keeper(one) == corner .or. keeper(other) == corner) cycle
                   associate (pair => contact%pairs(contact%n_pairs + 1))
-                     call edge_pair(contact%surfaces, list%edge(1, i), list%edge(2, i), pair)
+                     call edge_pair(contact%surfaces, list%edge(1, i), list%edge(2, i), pair, &
+                        gap(1))
                      if (pair%n_faces == 0) cycle
                   end associate
                   keeper(one) = edge
                   keeper(other) = edge
                end associate
                call count_in(contact, scales, -i, contact%edge_friction(i), &
-                  contact%edge_impulse(:, i), collides)
+                  contact%edge_impulse(:, i), gap, collides)
                if (collides) return
             end do
          end do
@@ -115,7 +119,7 @@ contains
       integer, intent(in) :: i
       logical, intent(inout) :: collides
 
-      real(wp) :: arm(2), d(2)
+      real(wp) :: arm(2), d(2), gap(2)
       integer :: k
 
       associate (a => contact%candidates%corner(1, i), b => contact%candidates%corner(2, i), &
@@ -123,115 +127,121 @@ contains
          do k = 1, 2
             arm(k) = (surfaces%reference(k, a) - surfaces%reference(k, b)) &
                + (surfaces%u(k, a) - surfaces%u(k, b))
-            d(k) = contact%before(k, a) - contact%before(k, b)
+            d(k) = contact%motion(a)%before(k) - contact%motion(b)%before(k)
          end do
          if (arm(1)*arm(1) + arm(2)*arm(2) > max((corner_reach*scales%h)**2, &
             (steps_ahead*scales%dt)**2*(d(1)*d(1) + d(2)*d(2)))) return
          contact%keeper(i) = corner
          do k = 1, 2
-            d(k) = arm(k) + scales%dt*(contact%v(k, a) - contact%v(k, b))
+            d(k) = arm(k) + scales%dt*(contact%motion(a)%v(k) - contact%motion(b)%v(k))
          end do
-         call corner_pair(surfaces, a, b, contact%kind(i), contact%face(:, i), arm, d, pair)
+         call corner_pair(surfaces, a, b, contact%kind(i), contact%face(:, i), arm, d, pair, &
+            gap)
          if (pair%n_faces == 0) return
       end associate
       call count_in(contact, scales, i, contact%corner_friction(i), contact%corner_impulse(:, i), &
-         collides)
+         gap, collides)
    end subroutine add_corner
 
    !> Complete the pair that stands behind those of the step, and count it in unless it is open.
-   subroutine count_in(contact, scales, candidate, friction, impulse, collides)
+   subroutine count_in(contact, scales, candidate, friction, impulse, gap, collides)
       type(contact_type), intent(inout) :: contact
       type(scales_type), intent(in) :: scales
       integer, intent(in) :: candidate       !! corner when positive, node and edge when negative
       real(wp), intent(in) :: friction
       real(wp), intent(in) :: impulse(2)     !! normal and tangential, of the step before [N s]
+      real(wp), intent(in) :: gap(2)         !! [m]
       logical, intent(inout) :: collides
 
-      real(wp) :: gap, d(2)
+      real(wp) :: least, d(2)
 
-      associate (pair => contact%pairs(contact%n_pairs + 1), v => contact%v)
-         gap = pair%gap(1)
-         if (pair%n_faces == 2) gap = min(gap, pair%gap(2))
-         if (gap > max(open_gap*scales%h, open_steps*scales%dt*scales%speed)) return
-         d = pair%weight(1)*v(:, pair%node(1)) + pair%weight(2)*v(:, pair%node(2)) &
-            + pair%weight(3)*v(:, pair%node(3))
-         if (pair%n_nodes == 4) d = d + pair%weight(4)*v(:, pair%node(4))
+      associate (pair => contact%pairs(contact%n_pairs + 1))
+         least = gap(1)
+         if (pair%n_faces == 2) least = min(least, gap(2))
+         if (least > max(open_gap*scales%h, open_steps*scales%dt*scales%speed)) return
          pair%candidate = candidate
          pair%friction = friction
-         call complete_pair(pair, scales, contact%inverse_mass, d, collides)
+         call complete_pair(pair, scales, contact%motion, gap, d, collides)
          if (collides .or. pair%n_faces == 0) return
          pair%impulse(1) = impulse(1)*pair%normal(1, 1) - impulse(2)*pair%normal(2, 1)
          pair%impulse(2) = impulse(1)*pair%normal(2, 1) + impulse(2)*pair%normal(1, 1)
          contact%fastest = max(contact%fastest, abs(d(1)), abs(d(2)))
-         contact%deepest = max(contact%deepest, -gap)
+         contact%deepest = max(contact%deepest, -least)
       end associate
       contact%n_pairs = contact%n_pairs + 1
    end subroutine count_in
 
-   !> Compliance and bias of a pair; faces along which nothing can yield are dropped.
-   pure subroutine complete_pair(pair, scales, inverse_mass, d, collides)
+   !> Stiffness of a pair and where it comes to rest; faces along which nothing can yield go.
+   pure subroutine complete_pair(pair, scales, motion, gap, d, collides)
       type(pair_type), intent(inout) :: pair
       type(scales_type), intent(in) :: scales
-      real(wp), intent(in), contiguous :: inverse_mass(:, :)
-      real(wp), intent(in) :: d(2)         !! predicted relative velocity [m/s]
+      type(motion_type), intent(in), contiguous :: motion(:)
+      real(wp), intent(in) :: gap(2)       !! [m]
+      real(wp), intent(out) :: d(2)        !! predicted relative velocity [m/s]
       logical, intent(inout) :: collides   !! motions that may not yield meet
 
-      real(wp) :: w(2), largest
+      real(wp) :: w(2), bias(2), largest
       integer :: k, face
 
-      w = pair%weight(1)**2*inverse_mass(:, pair%node(1)) &
-         + pair%weight(2)**2*inverse_mass(:, pair%node(2)) &
-         + pair%weight(3)**2*inverse_mass(:, pair%node(3))
-      if (pair%n_nodes == 4) w = w + pair%weight(4)**2*inverse_mass(:, pair%node(4))
+      d = 0.0_wp
+      w = 0.0_wp
+      do k = 1, pair%n_nodes
+         associate (at => motion(pair%node(k)), weight => pair%weight(k))
+            d(1) = d(1) + weight*at%v(1)
+            d(2) = d(2) + weight*at%v(2)
+            w(1) = w(1) + weight*weight*at%inverse_mass(1)
+            w(2) = w(2) + weight*weight*at%inverse_mass(2)
+         end associate
+      end do
       largest = max(w(1), w(2))
+      bias(1) = feasible_bias(gap(1), scales)
+      if (pair%n_faces == 2) bias(2) = feasible_bias(gap(2), scales)
       do face = pair%n_faces, 1, -1
          associate (n => pair%normal(:, face))
-            pair%bias(face) = feasible_bias(pair%gap(face), scales)
             if (n(1)*n(1)*w(1) + n(2)*n(2)*w(2) > rigid*largest) cycle
-            collides = collides .or. (n(1)*d(1) + n(2)*d(2) + pair%bias(face))*scales%dt &
+            collides = collides .or. (n(1)*d(1) + n(2)*d(2) + bias(face))*scales%dt &
                < -meeting*scales%h
          end associate
-         call drop_face(pair, face)
+         call drop_face(pair, face, bias)
       end do
-      do k = 1, 2
-         pair%compliance(k) = max(w(k), floor*largest)
-         pair%stiffness(k) = 1.0_wp/pair%compliance(k)
-      end do
-      call set_rest(pair)
+      pair%stiffness(1) = 1.0_wp/max(w(1), floor*largest)
+      pair%stiffness(2) = 1.0_wp/max(w(2), floor*largest)
+      call set_rest(pair, bias)
    end subroutine complete_pair
 
-   !> Forget a face along which nothing can yield.
-   pure subroutine drop_face(pair, face)
+   !> Forget a face.
+   pure subroutine drop_face(pair, face, bias)
       type(pair_type), intent(inout) :: pair
       integer, intent(in) :: face
+      real(wp), intent(inout) :: bias(2)
 
       if (face == 1 .and. pair%n_faces == 2) then
          pair%normal(:, 1) = pair%normal(:, 2)
-         pair%gap(1) = pair%gap(2)
-         pair%bias(1) = pair%bias(2)
+         bias(1) = bias(2)
       end if
       pair%n_faces = pair%n_faces - 1
    end subroutine drop_face
 
-   !> Relative velocity that closes the gaps of all faces and no more.
-   pure subroutine set_rest(pair)
+   !> Relative velocity that closes the gaps of all faces and no more; of two faces that are one
+   !> the nearer counts.
+   pure subroutine set_rest(pair, bias)
       type(pair_type), intent(inout) :: pair
+      real(wp), intent(inout) :: bias(2)   !! speed that the gaps may still have [m/s]
 
       real(wp) :: determinant
 
-      associate (n => pair%normal, bias => pair%bias)
-         if (pair%n_faces == 1) then
-            pair%rest(1) = -bias(1)*n(1, 1)
-            pair%rest(2) = -bias(1)*n(2, 1)
-            return
+      associate (n => pair%normal)
+         if (pair%n_faces == 2) then
+            determinant = n(1, 1)*n(2, 2) - n(2, 1)*n(1, 2)
+            if (abs(determinant) >= parallel) then
+               pair%rest(1) = (n(2, 1)*bias(2) - n(2, 2)*bias(1))/determinant
+               pair%rest(2) = (n(1, 2)*bias(1) - n(1, 1)*bias(2))/determinant
+               return
+            end if
+            call drop_face(pair, merge(2, 1, bias(1) <= bias(2)), bias)
          end if
-         determinant = n(1, 1)*n(2, 2) - n(2, 1)*n(1, 2)
-         pair%rest = 0.0_wp
-         pair%turn = 0.0_wp
-         if (abs(determinant) < parallel) return
-         pair%turn = sign(1.0_wp, determinant)
-         pair%rest(1) = (n(2, 1)*bias(2) - n(2, 2)*bias(1))/determinant
-         pair%rest(2) = (n(1, 2)*bias(1) - n(1, 1)*bias(2))/determinant
+         pair%rest(1) = -bias(1)*n(1, 1)
+         pair%rest(2) = -bias(1)*n(2, 1)
       end associate
    end subroutine set_rest
 

@@ -6,7 +6,7 @@ module lithofrac_contact_contact
    use lithofrac_base_status, only: bad_input, ok, set_failure, status_type
    use lithofrac_contact_corners, only: classify
    use lithofrac_contact_multipliers, only: queue_type
-   use lithofrac_contact_pairs, only: pair_type
+   use lithofrac_contact_pairs, only: motion_type, pair_type
    use lithofrac_contact_search, only: candidates_type, list_candidates
    use lithofrac_contact_surfaces, only: new_surfaces, surfaces_type
    use lithofrac_mesh_mesh, only: mesh_type
@@ -47,10 +47,9 @@ module lithofrac_contact_contact
       integer, allocatable :: keeper(:)            !! (0:n_corners) who keeps the two nodes apart
       integer, allocatable :: beside(:)            !! (n) corner pairs of a node in this step
       type(queue_type) :: queue
-      real(wp), allocatable :: inverse_mass(:, :)  !! (2, n) [1/kg]
-      real(wp), allocatable :: before(:, :)        !! (2, n) velocity at the half step before [m/s]
-      real(wp), allocatable :: v(:, :)             !! (2, n) and after it [m/s]
-      real(wp), allocatable :: impulse(:, :)       !! (2, n) sum on the node [N s]
+      type(motion_type), allocatable :: motion(:)  !! (n)
+      integer :: n_loaded = -1                     !! pairs of the step before; -1: not known
+      integer, allocatable :: loaded(:)            !! their candidates
       real(wp) :: work_before(2) = 0.0_wp          !! normal, friction: half step before [J]
       real(wp) :: work_after(2) = 0.0_wp           !! and after [J]
       real(wp) :: fastest = 0.0_wp                 !! relative velocity of a pair in this step [m/s]
@@ -79,8 +78,7 @@ contains
       if (status%code /= ok) return
       contact%friction = friction
       associate (n => contact%surfaces%n)
-         allocate (contact%inverse_mass(2, n), contact%before(2, n), source=0.0_wp)
-         allocate (contact%v(2, n), contact%impulse(2, n), source=0.0_wp)
+         allocate (contact%motion(n))
          allocate (contact%beside(n), contact%queue%newest(n), source=0)
       end associate
       contact%tangent = contact%surfaces%tangent
@@ -123,13 +121,15 @@ contains
       if (allocated(contact%kind)) then
          deallocate (contact%kind, contact%face, contact%pairs)
          deallocate (contact%neighbours, contact%corner_friction, contact%edge_friction)
-         deallocate (contact%keeper, contact%first_edge, contact%queue%next, contact%queue%now)
+         deallocate (contact%keeper, contact%first_edge, contact%queue%next, contact%queue%now, &
+            contact%loaded)
       end if
       allocate (contact%kind(n_corners), contact%face(2, n_corners))
       allocate (contact%neighbours(n_corners))
       allocate (contact%corner_friction(n_corners), contact%edge_friction(n_edges))
       allocate (contact%pairs(n_corners + n_edges + 1))
       allocate (contact%queue%next(n_corners + n_edges), contact%queue%now(n_corners + n_edges))
+      allocate (contact%loaded(n_corners + n_edges))
       allocate (contact%keeper(0:n_corners), contact%first_edge(0:n_corners + 1))
       contact%corner_impulse = spread([0.0_wp, 0.0_wp], 2, n_corners)
       contact%edge_impulse = spread([0.0_wp, 0.0_wp], 2, n_edges)
@@ -146,7 +146,7 @@ contains
       end associate
       call order_edges(contact)
       call find_near(contact)
-      contact%impulse = 0.0_wp
+      contact%n_loaded = -1
    end subroutine prepare_list
 
    !> Sort the node-edge pairs by a corner that the node makes with an end of the edge: while that

@@ -6,7 +6,7 @@
 module lithofrac_contact_multipliers
    use lithofrac_base_kinds, only: wp
    use lithofrac_contact_friction, only: one_face, two_faces
-   use lithofrac_contact_pairs, only: pair_type
+   use lithofrac_contact_pairs, only: motion_type, pair_type
    implicit none
    private
 
@@ -22,27 +22,25 @@ module lithofrac_contact_multipliers
 contains
 
    !> Find the impulses; velocities come out with them.
-   pure subroutine solve_pairs(pairs, inverse_mass, tolerance, most_sweeps, v, queue, sweeps, &
-         converged)
+   pure subroutine solve_pairs(pairs, motion, tolerance, most_sweeps, queue, sweeps, converged)
       type(pair_type), intent(inout), contiguous :: pairs(:)  !! `impulse` a guess, the solution
-      real(wp), intent(in), contiguous :: inverse_mass(:, :)  !! (2, n) [1/kg]
+      type(motion_type), intent(inout), contiguous :: motion(:)  !! (n)
       real(wp), intent(in) :: tolerance             !! change of a relative velocity [m/s]
       integer, intent(in) :: most_sweeps
-      real(wp), intent(inout), contiguous :: v(:, :)  !! (2, n) without contact, then with [m/s]
-      type(queue_type), intent(inout) :: queue
+      type(queue_type), intent(inout) :: queue      !! `newest` 0 where pairs are
       integer, intent(out) :: sweeps
       logical, intent(out) :: converged
 
       integer :: i, k, first, last
       logical :: moved
 
-      call link_pairs(pairs, queue%newest)
       do i = 1, size(pairs)
-         call add_impulse(pairs(i), pairs(i)%impulse(1), pairs(i)%impulse(2), inverse_mass, v)
+         call link_pair(pairs(i), i, queue%newest)
+         call add_impulse(pairs(i), pairs(i)%impulse(1), pairs(i)%impulse(2), motion)
       end do
       last = 0
       do i = 1, size(pairs)
-         call visit_pair(pairs(i), inverse_mass, tolerance, v, moved)
+         call visit_pair(pairs(i), motion, tolerance, moved)
          if (moved) call wake(pairs, i, i - 1, queue, last)
       end do
       do sweeps = 1, most_sweeps
@@ -54,32 +52,26 @@ contains
          do k = first, 1, -1
             i = queue%now(k)
             pairs(i)%is_queued = .false.
-            call visit_pair(pairs(i), inverse_mass, tolerance, v, moved)
+            call visit_pair(pairs(i), motion, tolerance, moved)
             if (moved) call wake(pairs, i, size(pairs), queue, last)
          end do
       end do
    end subroutine solve_pairs
 
    !> Chain the pairs of every node, newest first.
-   pure subroutine link_pairs(pairs, newest)
-      type(pair_type), intent(inout), contiguous :: pairs(:)
+   pure subroutine link_pair(pair, number, newest)
+      type(pair_type), intent(inout) :: pair
+      integer, intent(in) :: number
       integer, intent(inout), contiguous :: newest(:)   !! (n) 4*pair + place of the node in it
 
-      integer :: i, k
+      integer :: k
 
-      do i = 1, size(pairs)
-         do k = 1, 4
-            newest(pairs(i)%node(k)) = 0
-         end do
+      pair%is_queued = .false.
+      do k = 1, pair%n_nodes
+         pair%older(k) = newest(pair%node(k))
+         newest(pair%node(k)) = 4*number + k - 1
       end do
-      do i = 1, size(pairs)
-         pairs(i)%is_queued = .false.
-         do k = 1, pairs(i)%n_nodes
-            pairs(i)%older(k) = newest(pairs(i)%node(k))
-            newest(pairs(i)%node(k)) = 4*i + k - 1
-         end do
-      end do
-   end subroutine link_pairs
+   end subroutine link_pair
 
    !> Queue the pairs that share a node with pair `i`, up to number `last_pair`.
    pure subroutine wake(pairs, i, last_pair, queue, n)
@@ -105,85 +97,93 @@ contains
    end subroutine wake
 
    !> Solve one pair; tell if that has moved its nodes.
-   pure subroutine visit_pair(pair, inverse_mass, tolerance, v, moved)
+   pure subroutine visit_pair(pair, motion, tolerance, moved)
       type(pair_type), intent(inout) :: pair
-      real(wp), intent(in), contiguous :: inverse_mass(:, :)
+      type(motion_type), intent(inout), contiguous :: motion(:)
       real(wp), intent(in) :: tolerance
-      real(wp), intent(inout), contiguous :: v(:, :)
       logical, intent(out) :: moved
 
       real(wp) :: p(2), change(2)
 
-      call solve_pair(pair, v, p)
+      call solve_pair(pair, motion, p)
       change(1) = p(1) - pair%impulse(1)
       change(2) = p(2) - pair%impulse(2)
       moved = .false.
       if (.not. max(abs(change(1)), abs(change(2))) > 0.0_wp) return
       pair%impulse(1) = p(1)
       pair%impulse(2) = p(2)
-      call add_impulse(pair, change(1), change(2), inverse_mass, v)
-      moved = max(abs(change(1))*pair%compliance(1), abs(change(2))*pair%compliance(2)) &
-         > tolerance
+      call add_impulse(pair, change(1), change(2), motion)
+      moved = abs(change(1)) > tolerance*pair%stiffness(1) &
+         .or. abs(change(2)) > tolerance*pair%stiffness(2)
    end subroutine visit_pair
 
    !> Impulse of one pair when all others keep theirs.
    !>
-   !> The common cases stand here: a pair that is open, that sticks, or at two faces that press
-   !> both. All others are left to the closed forms of `friction`.
-   pure subroutine solve_pair(pair, v, p)
+   !> The common cases stand here: a pair that is open or sticks, two faces that press both. All
+   !> others are left to the closed forms of `friction`.
+   pure subroutine solve_pair(pair, motion, p)
       type(pair_type), intent(in) :: pair
-      real(wp), intent(in), contiguous :: v(:, :)
+      type(motion_type), intent(in), contiguous :: motion(:)
       real(wp), intent(out) :: p(2)                 !! [N s]
 
-      real(wp) :: d0(2), normal, along
+      real(wp) :: d(2), normal, along, turn
+      integer :: k
 
-      associate (node => pair%node, weight => pair%weight, n => pair%normal, w => pair%compliance)
-         d0(1) = weight(1)*v(1, node(1)) + weight(2)*v(1, node(2)) + weight(3)*v(1, node(3))
-         d0(2) = weight(1)*v(2, node(1)) + weight(2)*v(2, node(2)) + weight(3)*v(2, node(3))
-         if (pair%n_nodes == 4) then
-            d0(1) = d0(1) + weight(4)*v(1, node(4))
-            d0(2) = d0(2) + weight(4)*v(2, node(4))
-         end if
-         d0(1) = d0(1) - w(1)*pair%impulse(1)
-         d0(2) = d0(2) - w(2)*pair%impulse(2)
+      associate (n => pair%normal)
+         d = 0.0_wp
+         do k = 1, pair%n_nodes
+            d(1) = d(1) + pair%weight(k)*motion(pair%node(k))%v(1)
+            d(2) = d(2) + pair%weight(k)*motion(pair%node(k))%v(2)
+         end do
          ! what takes the pair to rest at its faces
-         p(1) = (pair%rest(1) - d0(1))*pair%stiffness(1)
-         p(2) = (pair%rest(2) - d0(2))*pair%stiffness(2)
+         p(1) = pair%impulse(1) + (pair%rest(1) - d(1))*pair%stiffness(1)
+         p(2) = pair%impulse(2) + (pair%rest(2) - d(2))*pair%stiffness(2)
          if (pair%n_faces == 1) then
             normal = p(1)*n(1, 1) + p(2)*n(2, 1)
             along = p(2)*n(1, 1) - p(1)*n(2, 1)
-            if (d0(1)*n(1, 1) + d0(2)*n(2, 1) + pair%bias(1) >= 0.0_wp) then
-               p = 0.0_wp
-            else if (.not. (abs(along) <= pair%friction*normal .and. pair%friction > 0.0_wp)) then
-               p = one_face(d0, n(:, 1), pair%bias(1), pair%friction, w)
-            end if
-         else if (.not. (pair%turn*(p(1)*n(2, 2) - p(2)*n(1, 2)) > 0.0_wp .and. &
-            pair%turn*(n(1, 1)*p(2) - n(2, 1)*p(1)) > 0.0_wp)) then
-            p = two_faces(d0, n, pair%bias, pair%friction, w)
+            if (normal > 0.0_wp .and. abs(along) <= pair%friction*normal) return
+         else
+            turn = n(1, 1)*n(2, 2) - n(2, 1)*n(1, 2)
+            if (turn*(p(1)*n(2, 2) - p(2)*n(1, 2)) > 0.0_wp .and. &
+               turn*(n(1, 1)*p(2) - n(2, 1)*p(1)) > 0.0_wp) return
          end if
       end associate
+      p = limited(pair, d)
    end subroutine solve_pair
 
+   !> Impulse of a pair that may open or slide.
+   pure function limited(pair, d) result(p)
+      type(pair_type), intent(in) :: pair
+      real(wp), intent(in) :: d(2)                  !! relative velocity with its impulse [m/s]
+      real(wp) :: p(2)
+
+      real(wp) :: d0(2), w(2), bias(2)
+
+      w = 1.0_wp/pair%stiffness
+      d0 = d - w*pair%impulse
+      bias(1) = -(pair%rest(1)*pair%normal(1, 1) + pair%rest(2)*pair%normal(2, 1))
+      if (pair%n_faces == 1) then
+         p = one_face(d0, pair%normal(:, 1), bias(1), pair%friction, w)
+      else
+         bias(2) = -(pair%rest(1)*pair%normal(1, 2) + pair%rest(2)*pair%normal(2, 2))
+         p = two_faces(d0, pair%normal, bias, pair%friction, w)
+      end if
+   end function limited
+
    !> Change the velocities by an impulse of the pair.
-   pure subroutine add_impulse(pair, x, y, inverse_mass, v)
+   pure subroutine add_impulse(pair, x, y, motion)
       type(pair_type), intent(in) :: pair
       real(wp), intent(in) :: x, y                  !! [N s]
-      real(wp), intent(in), contiguous :: inverse_mass(:, :)
-      real(wp), intent(inout), contiguous :: v(:, :)
+      type(motion_type), intent(inout), contiguous :: motion(:)
 
       integer :: k
 
-      do k = 1, 3
-         associate (node => pair%node(k))
-            v(1, node) = v(1, node) + inverse_mass(1, node)*(pair%weight(k)*x)
-            v(2, node) = v(2, node) + inverse_mass(2, node)*(pair%weight(k)*y)
+      do k = 1, pair%n_nodes
+         associate (at => motion(pair%node(k)))
+            at%v(1) = at%v(1) + at%inverse_mass(1)*(pair%weight(k)*x)
+            at%v(2) = at%v(2) + at%inverse_mass(2)*(pair%weight(k)*y)
          end associate
       end do
-      if (pair%n_nodes < 4) return
-      associate (node => pair%node(4))
-         v(1, node) = v(1, node) + inverse_mass(1, node)*(pair%weight(4)*x)
-         v(2, node) = v(2, node) + inverse_mass(2, node)*(pair%weight(4)*y)
-      end associate
    end subroutine add_impulse
 
 end module lithofrac_contact_multipliers

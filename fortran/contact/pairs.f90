@@ -12,7 +12,7 @@ module lithofrac_contact_pairs
    implicit none
    private
 
-   public :: corner_pair, corner_reach, edge_pair, pair_type
+   public :: corner_pair, corner_reach, edge_pair, motion_type, pair_type
 
    real(wp), parameter :: reach = 0.1_wp          !! gaps beyond it are left out, over h
    real(wp), parameter :: depth = 0.01_wp         !! deeper is not behind this face, over h
@@ -22,36 +22,41 @@ module lithofrac_contact_pairs
    real(wp), parameter :: largest_share = 0.5_wp  !! of a reaction on a corner's neighbours
    real(wp), parameter :: turned = 1.0e-3_wp      !! faces closer than this are one plane [rad]
 
-   !> One pair; kept together because a sweep reads all of it and nothing else.
+   !> Motion of a boundary node; together in one line of the cache.
+   type :: motion_type
+      real(wp) :: v(2) = 0.0_wp                    !! velocity without contact, then with [m/s]
+      real(wp) :: inverse_mass(2) = 0.0_wp         !! [1/kg]
+      real(wp) :: before(2) = 0.0_wp               !! velocity at the half step before [m/s]
+      real(wp) :: impulse(2) = 0.0_wp              !! of all its pairs in this step [N s]
+   end type motion_type
+
+   !> One pair; kept together, and small, because every sweep reads all of it.
    type :: pair_type
       integer :: node(4) = 0                  !! boundary nodes; without weight where not needed
+      integer :: older(4) = 0                 !! pair before it of each node, see `multipliers`
       integer :: n_nodes = 3                  !! 3 or 4
       integer :: n_faces = 0                  !! 0: not a pair of now
       integer :: candidate = 0                !! corner when positive, node and edge when negative
-      integer :: older(4) = 0                 !! pair before it of each node, see `multipliers`
       logical :: is_queued = .false.          !! has to be solved again
       real(wp) :: weight(4) = 0.0_wp          !! relative velocity is sum(weight*v)
       real(wp) :: normal(2, 2) = 0.0_wp       !! (component, face), unit
-      real(wp) :: gap(2) = 0.0_wp             !! [m]
-      real(wp) :: bias(2) = 0.0_wp            !! [m/s]
-      real(wp) :: friction = 0.0_wp
-      real(wp) :: turn = 0.0_wp               !! sign of the turn from normal 1 to 2, 0 for one face
-      real(wp) :: compliance(2) = 0.0_wp      !! [1/kg]
-      real(wp) :: stiffness(2) = 0.0_wp       !! its inverse [kg]
       real(wp) :: rest(2) = 0.0_wp            !! relative velocity that just closes all faces [m/s]
+      real(wp) :: stiffness(2) = 0.0_wp       !! impulse for a change of it, > 0 [kg]
+      real(wp) :: friction = 0.0_wp
       real(wp) :: impulse(2) = 0.0_wp         !! of this step [N s]
    end type pair_type
 
 contains
 
    !> Node `i` against edge `j`.
-   pure subroutine edge_pair(surfaces, i, j, pair)
+   pure subroutine edge_pair(surfaces, i, j, pair, gap)
       type(surfaces_type), intent(in) :: surfaces
       integer, intent(in) :: i
       integer, intent(in) :: j
       type(pair_type), intent(inout) :: pair   !! `n_faces` 0 when they cannot touch now
+      real(wp), intent(out) :: gap             !! [m]
 
-      real(wp) :: x, y, share, gap
+      real(wp) :: x, y, share
 
       pair%n_faces = 0
       x = (surfaces%reference(1, i) - surfaces%reference(1, j)) + (surfaces%u(1, i) &
@@ -77,7 +82,6 @@ contains
          pair%weight(3) = -share
          pair%normal(1, 1) = tangent(2)
          pair%normal(2, 1) = -tangent(1)
-         pair%gap(1) = gap
       end associate
    end subroutine edge_pair
 
@@ -112,7 +116,7 @@ contains
    end function across
 
    !> Node `i` against node `k`, whose wedges are of `kind` with limiting faces `face`.
-   pure subroutine corner_pair(surfaces, i, k, kind, face, arm, predicted, pair)
+   pure subroutine corner_pair(surfaces, i, k, kind, face, arm, predicted, pair, gap)
       type(surfaces_type), intent(in) :: surfaces
       integer, intent(in) :: i
       integer, intent(in) :: k
@@ -121,11 +125,13 @@ contains
       real(wp), intent(in) :: arm(2)         !! offset from k to i [m]
       real(wp), intent(in) :: predicted(2)   !! the same after the step, unhindered [m]
       type(pair_type), intent(inout) :: pair !! `n_faces` 0 when they cannot touch now
+      real(wp), intent(out) :: gap(2)        !! [m]
 
-      real(wp) :: normal(2, 2), gap(2), chosen(2)
+      real(wp) :: normal(2, 2), chosen(2)
       integer :: use_face
 
       pair%n_faces = 0
+      gap = 0.0_wp
       if (kind == no_corner) return
       normal(:, 1) = face_normal(surfaces, i, k, face(1))
       normal(:, 2) = face_normal(surfaces, i, k, face(2))
@@ -135,11 +141,11 @@ contains
          if (is_in_reach(surfaces, gap(1)) .and. is_in_reach(surfaces, gap(2))) then
             call stand_at_two_faces(surfaces, i, k, face, arm, pair)
             pair%normal = normal
-            pair%gap = gap
          else if (is_in_reach(surfaces, gap(1))) then
-            call stand_at_face(surfaces, i, k, face(1), arm, normal(:, 1), gap(1), pair)
+            call stand_at_face(surfaces, i, k, face(1), arm, normal(:, 1), pair)
          else if (is_in_reach(surfaces, gap(2))) then
-            call stand_at_face(surfaces, i, k, face(2), arm, normal(:, 2), gap(2), pair)
+            call stand_at_face(surfaces, i, k, face(2), arm, normal(:, 2), pair)
+            gap(1) = gap(2)
          end if
          return
       case (flat_face)
@@ -156,7 +162,7 @@ contains
       end select
       gap(1) = dot_product(arm, chosen)
       if (is_in_reach(surfaces, gap(1))) then
-         call stand_at_face(surfaces, i, k, use_face, arm, chosen, gap(1), pair)
+         call stand_at_face(surfaces, i, k, use_face, arm, chosen, pair)
       end if
    end subroutine corner_pair
 
@@ -249,14 +255,13 @@ contains
 
    !> A pair along one normal, its reaction shared over the edge so that it has no moment;
    !> face 0 is a normal that belongs to no edge.
-   pure subroutine stand_at_face(surfaces, i, k, face, arm, normal, gap, pair)
+   pure subroutine stand_at_face(surfaces, i, k, face, arm, normal, pair)
       type(surfaces_type), intent(in) :: surfaces
       integer, intent(in) :: i
       integer, intent(in) :: k
       integer, intent(in) :: face
       real(wp), intent(in) :: arm(2)         !! from k to i [m]
       real(wp), intent(in) :: normal(2)
-      real(wp), intent(in) :: gap
       type(pair_type), intent(inout) :: pair
 
       real(wp) :: share, away
@@ -264,7 +269,6 @@ contains
 
       pair%n_faces = 1
       pair%normal(:, 1) = normal
-      pair%gap(1) = gap
       pair%n_nodes = 3
       pair%node = [i, k, k, k]
       pair%weight(:3) = [1.0_wp, -1.0_wp, 0.0_wp]
@@ -315,8 +319,9 @@ contains
       else
          return
       end if
-      before = offset(surfaces, surfaces%prev(corner), corner)
-      after = offset(surfaces, surfaces%next(corner), corner)
+      ! the edges into and out of the corner
+      before = -surfaces%length(surfaces%prev(corner))*surfaces%tangent(:, surfaces%prev(corner))
+      after = surfaces%length(corner)*surfaces%tangent(:, corner)
       determinant = before(1)*after(2) - before(2)*after(1)
       share = [arm(1)*after(2) - arm(2)*after(1), before(1)*arm(2) - before(2)*arm(1)]
       if (.not. sum(abs(share)) <= largest_share*abs(determinant)) return

@@ -53,7 +53,7 @@ contains
       call turn_corners(contact)
    end subroutine follow_motion
 
-   !> Impulses of one step; `contact%v` holds the velocities without contact, then with it.
+   !> Impulses of one step; `contact%motion` holds the velocities without contact, then with it.
    subroutine solve_contact(contact, dt, critical, code, node)
       type(contact_type), intent(inout) :: contact
       real(wp), intent(in) :: dt               !! [s]
@@ -72,22 +72,21 @@ contains
       contact%deepest = 0.0_wp
       speed = 0.0_wp
       do i = 1, size(contact%near)
-         associate (k => contact%near(i))
-            contact%impulse(1, k) = 0.0_wp
-            contact%impulse(2, k) = 0.0_wp
-            speed = max(speed, contact%v(1, k)**2 + contact%v(2, k)**2)
+         associate (at => contact%motion(contact%near(i)))
+            at%impulse = 0.0_wp
+            speed = max(speed, at%v(1)**2 + at%v(2)**2)
          end associate
+         contact%queue%newest(contact%near(i)) = 0
       end do
       call collect_pairs(contact, scales_type(contact%surfaces%h, dt, critical, sqrt(speed)), &
          collides, node)
       if (collides) code = prescribed_collision
-      contact%corner_impulse = 0.0_wp
-      contact%edge_impulse = 0.0_wp
+      call forget_impulses(contact)
       if (collides .or. contact%n_pairs == 0) return
       associate (pairs => contact%pairs(:contact%n_pairs), h => contact%surfaces%h)
-         call solve_pairs(pairs, contact%inverse_mass, max(accuracy*contact%fastest, fine*h/dt), &
-            merge(many_sweeps, usual_sweeps, contact%deepest > deep*h), contact%v, &
-            contact%queue, sweeps, converged)
+         call solve_pairs(pairs, contact%motion, max(accuracy*contact%fastest, fine*h/dt), &
+            merge(many_sweeps, usual_sweeps, contact%deepest > deep*h), contact%queue, sweeps, &
+            converged)
          contact%fastest = 0.0_wp
          do i = 1, contact%n_pairs
             call book_pair(contact, pairs(i))
@@ -101,6 +100,28 @@ contains
          contact%deepest/contact%surfaces%h)
    end subroutine solve_contact
 
+   !> Clear the impulses of the step before.
+   pure subroutine forget_impulses(contact)
+      type(contact_type), intent(inout) :: contact
+
+      integer :: i
+
+      if (contact%n_loaded < 0) then
+         contact%corner_impulse = 0.0_wp
+         contact%edge_impulse = 0.0_wp
+      end if
+      do i = 1, contact%n_loaded
+         associate (candidate => contact%loaded(i))
+            if (candidate > 0) then
+               contact%corner_impulse(:, candidate) = 0.0_wp
+            else
+               contact%edge_impulse(:, -candidate) = 0.0_wp
+            end if
+         end associate
+      end do
+      contact%n_loaded = 0
+   end subroutine forget_impulses
+
    !> Remember an impulse for the next step; book its work and its share on the nodes.
    pure subroutine book_pair(contact, pair)
       type(contact_type), intent(inout) :: contact
@@ -112,13 +133,13 @@ contains
       after = 0.0_wp
       before = 0.0_wp
       do k = 1, pair%n_nodes
-         associate (node => pair%node(k), weight => pair%weight(k))
-            after(1) = after(1) + weight*contact%v(1, node)
-            after(2) = after(2) + weight*contact%v(2, node)
-            before(1) = before(1) + weight*contact%before(1, node)
-            before(2) = before(2) + weight*contact%before(2, node)
-            contact%impulse(1, node) = contact%impulse(1, node) + weight*pair%impulse(1)
-            contact%impulse(2, node) = contact%impulse(2, node) + weight*pair%impulse(2)
+         associate (at => contact%motion(pair%node(k)), weight => pair%weight(k))
+            after(1) = after(1) + weight*at%v(1)
+            after(2) = after(2) + weight*at%v(2)
+            before(1) = before(1) + weight*at%before(1)
+            before(2) = before(2) + weight*at%before(2)
+            at%impulse(1) = at%impulse(1) + weight*pair%impulse(1)
+            at%impulse(2) = at%impulse(2) + weight*pair%impulse(2)
          end associate
       end do
       contact%fastest = max(contact%fastest, abs(after(1)), abs(after(2)))
@@ -129,6 +150,8 @@ contains
       associate (n => pair%normal(:, 1))
          p = [n(1)*p(1) + n(2)*p(2), n(1)*p(2) - n(2)*p(1)]
       end associate
+      contact%n_loaded = contact%n_loaded + 1
+      contact%loaded(contact%n_loaded) = pair%candidate
       if (pair%candidate > 0) then
          contact%corner_impulse(:, pair%candidate) = p
       else

@@ -21,8 +21,12 @@ contains
    subroutine bring_masses(model)
       type(model_type), intent(inout) :: model
 
+      integer :: i
+
       associate (contact => model%contact)
-         contact%inverse_mass = model%fields%inverse_mass(:, contact%surfaces%node)
+         do i = 1, contact%surfaces%n
+            contact%motion(i)%inverse_mass = model%fields%inverse_mass(:, contact%surfaces%node(i))
+         end do
       end associate
    end subroutine bring_masses
 
@@ -34,7 +38,7 @@ contains
 
       associate (contact => model%contact)
          do i = 1, contact%surfaces%n
-            contact%before(:, i) = model%fields%v(:, contact%surfaces%node(i))
+            contact%motion(i)%before = model%fields%v(:, contact%surfaces%node(i))
          end do
       end associate
    end subroutine note_velocities
@@ -86,8 +90,7 @@ contains
       associate (contact => model%contact, fields => model%fields)
          do k = 1, size(contact%near)
             i = contact%near(k)
-            contact%v(1, i) = fields%v(1, contact%surfaces%node(i))
-            contact%v(2, i) = fields%v(2, contact%surfaces%node(i))
+            contact%motion(i)%v = fields%v(:, contact%surfaces%node(i))
          end do
       end associate
    end subroutine bring_velocities
@@ -96,23 +99,20 @@ contains
    pure subroutine take_impulses(model)
       type(model_type), intent(inout) :: model
 
-      integer :: i, k, node
-      real(wp) :: per_step, change(2), sums(n_sums)
+      integer :: k, node
+      real(wp) :: per_step, sums(n_sums)
 
       sums = 0.0_wp
       per_step = 1.0_wp/model%dt
       associate (contact => model%contact, fields => model%fields)
          do k = 1, size(contact%near)
-            i = contact%near(k)
-            node = contact%surfaces%node(i)
-            fields%contact(1, node) = contact%impulse(1, i)*per_step
-            fields%contact(2, node) = contact%impulse(2, i)*per_step
-            if (.not. max(abs(contact%impulse(1, i)), abs(contact%impulse(2, i))) > 0.0_wp) cycle
-            change(1) = contact%v(1, i) - fields%v(1, node)
-            change(2) = contact%v(2, i) - fields%v(2, node)
-            call correct_sums(model, node, contact%before(:, i), change, sums)
-            fields%v(1, node) = contact%v(1, i)
-            fields%v(2, node) = contact%v(2, i)
+            node = contact%surfaces%node(contact%near(k))
+            associate (at => contact%motion(contact%near(k)))
+               fields%contact(:, node) = at%impulse*per_step
+               if (.not. max(abs(at%impulse(1)), abs(at%impulse(2))) > 0.0_wp) cycle
+               call correct_sums(model, node, at%before, at%v - fields%v(:, node), sums)
+               fields%v(:, node) = at%v
+            end associate
          end do
       end associate
       model%sums(:, model%blocks%n_runs + 1) = sums
