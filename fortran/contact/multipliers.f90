@@ -12,6 +12,9 @@ module lithofrac_contact_multipliers
 
    public :: queue_type, solve_pairs
 
+   integer, parameter :: early_sweeps = 8  !! slip that goes to and fro needs no more of them
+   real(wp), parameter :: late = 4.0_wp    !! tolerance after the early sweeps, over that before
+
    !> Room to remember which pairs have to be solved again.
    type :: queue_type
       integer, allocatable :: newest(:)   !! (n) 4*pair + place, last pair of a boundary node
@@ -33,6 +36,7 @@ contains
 
       integer :: i, k, first, last
       logical :: moved
+      real(wp) :: enough
 
       do i = 1, size(pairs)
          call link_pair(pairs(i), i, queue%newest)
@@ -47,12 +51,13 @@ contains
          converged = last == 0
          if (converged) return
          first = last
+         enough = merge(tolerance, late*tolerance, sweeps <= early_sweeps)
          queue%now(:last) = queue%next(:last)
          last = 0
          do k = first, 1, -1
             i = queue%now(k)
             pairs(i)%is_queued = .false.
-            call visit_pair(pairs(i), motion, tolerance, moved)
+            call visit_pair(pairs(i), motion, enough, moved)
             if (moved) call wake(pairs, i, size(pairs), queue, last)
          end do
       end do

@@ -73,7 +73,6 @@ contains
       speed = 0.0_wp
       do i = 1, size(contact%near)
          associate (at => contact%motion(contact%near(i)))
-            at%impulse = 0.0_wp
             speed = max(speed, at%v(1)**2 + at%v(2)**2)
          end associate
          contact%queue%newest(contact%near(i)) = 0

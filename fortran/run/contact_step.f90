@@ -90,7 +90,12 @@ contains
       associate (contact => model%contact, fields => model%fields)
          do k = 1, size(contact%near)
             i = contact%near(k)
-            contact%motion(i)%v = fields%v(:, contact%surfaces%node(i))
+            associate (at => contact%motion(i), node => contact%surfaces%node(i))
+               at%v(1) = fields%v(1, node)
+               at%v(2) = fields%v(2, node)
+               at%impulse(1) = 0.0_wp
+               at%impulse(2) = 0.0_wp
+            end associate
          end do
       end associate
    end subroutine bring_velocities
