@@ -13,7 +13,9 @@ module lithofrac_contact_multipliers
    public :: queue_type, solve_pairs
 
    integer, parameter :: early_sweeps = 8  !! slip that goes to and fro needs no more of them
-   real(wp), parameter :: late = 4.0_wp    !! tolerance after the early sweeps, over that before
+   real(wp), parameter :: late = 8.0_wp    !! tolerance after the early sweeps, over that before
+
+   real(wp), parameter :: share = 0.25_wp !! of the tolerance that one pair may do to another unseen
 
    !> Room to remember which pairs have to be solved again.
    type :: queue_type
@@ -35,7 +37,6 @@ contains
       logical, intent(out) :: converged
 
       integer :: i, k, first, last
-      logical :: moved
       real(wp) :: enough
 
       do i = 1, size(pairs)
@@ -44,8 +45,7 @@ contains
       end do
       last = 0
       do i = 1, size(pairs)
-         call visit_pair(pairs(i), motion, tolerance, moved)
-         if (moved) call wake(pairs, i, i - 1, queue, last)
+         call visit_pair(pairs, i, i - 1, motion, tolerance, queue, last)
       end do
       do sweeps = 1, most_sweeps
          converged = last == 0
@@ -57,8 +57,7 @@ contains
          do k = first, 1, -1
             i = queue%now(k)
             pairs(i)%is_queued = .false.
-            call visit_pair(pairs(i), motion, enough, moved)
-            if (moved) call wake(pairs, i, size(pairs), queue, last)
+            call visit_pair(pairs, i, size(pairs), motion, enough, queue, last)
          end do
       end do
    end subroutine solve_pairs
@@ -78,49 +77,61 @@ contains
       end do
    end subroutine link_pair
 
-   !> Queue the pairs that share a node with pair `i`, up to number `last_pair`.
-   pure subroutine wake(pairs, i, last_pair, queue, n)
+   !> Solve pair `i`; queue the pairs that feel it.
+   pure subroutine visit_pair(pairs, i, last_pair, motion, tolerance, queue, n)
       type(pair_type), intent(inout), contiguous :: pairs(:)
       integer, intent(in) :: i
       integer, intent(in) :: last_pair      !! those behind it are still to be visited
+      type(motion_type), intent(inout), contiguous :: motion(:)
+      real(wp), intent(in) :: tolerance     !! change of a relative velocity [m/s]
       type(queue_type), intent(inout) :: queue
       integer, intent(inout) :: n           !! pairs in the queue
 
-      integer :: k, entry, other
+      real(wp) :: p(2), x, y, dv
+      integer :: k
 
-      do k = 1, pairs(i)%n_nodes
-         entry = queue%newest(pairs(i)%node(k))
-         do while (entry > 0)
-            other = entry/4
-            entry = pairs(other)%older(modulo(entry, 4) + 1)
-            if (other > last_pair .or. other == i .or. pairs(other)%is_queued) cycle
-            pairs(other)%is_queued = .true.
-            n = n + 1
-            queue%next(n) = other
+      call solve_pair(pairs(i), motion, p)
+      associate (pair => pairs(i))
+         x = p(1) - pair%impulse(1)
+         y = p(2) - pair%impulse(2)
+         if (.not. max(abs(x), abs(y)) > 0.0_wp) return
+         pair%impulse(1) = p(1)
+         pair%impulse(2) = p(2)
+         call add_impulse(pair, x, y, motion)
+         do k = 1, pair%n_nodes
+            associate (at => motion(pair%node(k)))
+               dv = abs(pair%weight(k))*max(abs(x)*at%inverse_mass(1), abs(y)*at%inverse_mass(2))
+            end associate
+            if (dv > share*tolerance) call wake(pairs, i, last_pair, queue%newest(pair%node(k)), &
+               share*tolerance/dv, queue%next, n)
          end do
+      end associate
+   end subroutine visit_pair
+
+   !> Queue the other pairs of a node that has moved, unless they have little weight there.
+   pure subroutine wake(pairs, i, last_pair, newest, least, next, n)
+      type(pair_type), intent(inout), contiguous :: pairs(:)
+      integer, intent(in) :: i
+      integer, intent(in) :: last_pair
+      integer, intent(in) :: newest         !! 4*pair + place, of the node
+      real(wp), intent(in) :: least         !! weight that counts
+      integer, intent(inout), contiguous :: next(:)
+      integer, intent(inout) :: n
+
+      integer :: entry, other, place
+
+      entry = newest
+      do while (entry > 0)
+         other = entry/4
+         place = modulo(entry, 4) + 1
+         entry = pairs(other)%older(place)
+         if (other > last_pair .or. other == i .or. pairs(other)%is_queued) cycle
+         if (abs(pairs(other)%weight(place)) <= least) cycle
+         pairs(other)%is_queued = .true.
+         n = n + 1
+         next(n) = other
       end do
    end subroutine wake
-
-   !> Solve one pair; tell if that has moved its nodes.
-   pure subroutine visit_pair(pair, motion, tolerance, moved)
-      type(pair_type), intent(inout) :: pair
-      type(motion_type), intent(inout), contiguous :: motion(:)
-      real(wp), intent(in) :: tolerance
-      logical, intent(out) :: moved
-
-      real(wp) :: p(2), change(2)
-
-      call solve_pair(pair, motion, p)
-      change(1) = p(1) - pair%impulse(1)
-      change(2) = p(2) - pair%impulse(2)
-      moved = .false.
-      if (.not. max(abs(change(1)), abs(change(2))) > 0.0_wp) return
-      pair%impulse(1) = p(1)
-      pair%impulse(2) = p(2)
-      call add_impulse(pair, change(1), change(2), motion)
-      moved = abs(change(1)) > tolerance*pair%stiffness(1) &
-         .or. abs(change(2)) > tolerance*pair%stiffness(2)
-   end subroutine visit_pair
 
    !> Impulse of one pair when all others keep theirs.
    !>
