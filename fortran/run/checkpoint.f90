@@ -232,6 +232,8 @@ contains
       n = size(fracture%retry)
       call visitor%visit(n, fracture%retry)
       call visitor%visit_scalar(fracture%bonds%power_before)
+      call visitor%visit(size(fracture%drag%force), fracture%drag%force)
+      call visitor%visit_scalar(fracture%drag%power_before)
       n = size(fracture%bonds%list)
       call visitor%visit_count(n)
       if (visitor%mode == restoring) then

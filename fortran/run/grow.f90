@@ -8,9 +8,11 @@ module lithofrac_run_grow
    use lithofrac_base_status, only: ok, status_type
    use lithofrac_contact_rebuild, only: rebuild_contact
    use lithofrac_contact_surfaces, only: tag_edges
+   use lithofrac_fracture_fragment_drag, only: drag_power, list_loose_nodes
+   use lithofrac_fracture_fragments, only: find_parts
    use lithofrac_mechanics_blocks, only: new_blocks
    use lithofrac_mechanics_chunks, only: chunks_type, new_chunks, set_corners
-   use lithofrac_mechanics_fields, only: inelastic_type, move_inelastic, new_inelastic
+   use lithofrac_mechanics_fields, only: inelastic_type, move_inelastic, new_inelastic, prescribe
    use lithofrac_mechanics_follow_loads, only: follow_pressure, follow_velocity
    use lithofrac_mechanics_internal_force, only: element_force
    use lithofrac_mechanics_loads, only: add_forces
@@ -22,6 +24,7 @@ module lithofrac_run_grow
    use lithofrac_run_damping, only: n_moments
    use lithofrac_run_model, only: model_type, set_mass
    use lithofrac_run_node_update, only: n_sums
+   use lithofrac_run_settings, only: relative_to_affine
    implicit none
    private
 
@@ -77,10 +80,10 @@ contains
       call set_mass(model)
       do i = 1, size(model%velocities)
          associate (load => model%velocities(i))
-            model%fields%free_mass(load%component, load%node) = 0.0_wp
-            model%fields%inverse_mass(load%component, load%node) = 0.0_wp
+            call prescribe(model%fields, load%component, load%node)
          end associate
       end do
+      if (model%settings%damping == relative_to_affine) call loosen_fragments(model)
       call new_blocks(model%blocks, model%chunks, model%mesh)
       call resize_sums(model)
       call rebuild_contact(model%contact, living_part(model%mesh, &
@@ -93,6 +96,23 @@ contains
       end do
       call bring_masses(model)
    end subroutine rebuild
+
+   !> Loose fragments take no part in the damping of their body; they have their own.
+   subroutine loosen_fragments(model)
+      type(model_type), intent(inout) :: model
+
+      real(wp) :: lost   !! power that is still to be booked of who is not loose any more [W]
+
+      associate (drag => model%fracture%drag, fields => model%fields)
+         lost = drag_power(drag, fields%v)
+         call list_loose_nodes(drag, model%mesh, &
+            find_parts(model%mesh, model%fracture%topology))
+         lost = lost - drag_power(drag, fields%v)
+         model%ledger%damping = model%ledger%damping + 0.5_wp*model%dt*lost
+         fields%drag_mass(:, drag%node) = 0.0_wp
+         fields%fit_mass(drag%node) = 0.0_wp
+      end associate
+   end subroutine loosen_fragments
 
    !> Corners of elements that were given copies, and the layout anew where elements were cut.
    subroutine grow_elements(model, edits)
@@ -201,6 +221,9 @@ contains
                fields%external(:, bond%node) = fields%external(:, bond%node) + bond%force
             end associate
          end do
+         associate (drag => model%fracture%drag)
+            fields%external(:, drag%node) = fields%external(:, drag%node) + drag%force
+         end associate
       end associate
    end subroutine renew_forces
 

@@ -27,7 +27,7 @@ class FractureSection(Section):
     wave along the crack; 0 is at once, as in the paper."""
     reset: Literal["normal", "paper"] = "normal"
     """Failed elements regain their tensile strength across the crack alone, or all their state."""
-    interval_steps: int = Field(default=1, ge=1, le=1_000_000)
+    interval_steps: int = Field(default=5, ge=1, le=1_000_000)
     """Steps from one search for failed nodes to the next."""
 
     @model_validator(mode="before")
