@@ -28,6 +28,8 @@ module lithofrac_contact_solve
    real(wp), parameter :: deep = 1.0e-4_wp         !! penetration that asks for many sweeps, over h
    real(wp), parameter :: accuracy = 2.5e-4_wp     !! of the largest relative velocity
    real(wp), parameter :: fine = 1.0e-7_wp         !! gap that no sweep is worth, over h
+   real(wp), parameter :: unfelt = 10.0_wp         !! impulse over what its nodes feel: a jam
+   real(wp), parameter :: fading = 0.5_wp          !! of the first guess in a jam, by step
    real(wp), parameter :: longest_way = 0.05_wp    !! of a pair in a step, over h
 
 contains
@@ -94,6 +96,9 @@ contains
             node = pairs(i)%node(:2)
             return
          end do
+         do i = 1, contact%n_pairs
+            call loosen_jam(contact, pairs(i))
+         end do
       end associate
       call count_step(contact%statistics, contact%n_pairs, sweeps, converged, &
          contact%deepest/contact%surfaces%h)
@@ -158,6 +163,34 @@ contains
          contact%edge_impulse(:, -pair%candidate) = p
       end if
    end subroutine book_pair
+
+   !> Let impulses that only hold each other fade from the first guess of the next step.
+   !>
+   !> Nodes of several parts at one place can wedge each other within their friction cones: such
+   !> impulses cancel on every node, so nothing determines them and they grow with rounding.
+   pure subroutine loosen_jam(contact, pair)
+      type(contact_type), intent(inout) :: contact
+      type(pair_type), intent(in) :: pair
+
+      real(wp) :: own, felt
+      integer :: k
+
+      own = pair%impulse(1)**2 + pair%impulse(2)**2
+      if (.not. own > 0.0_wp) return
+      felt = 0.0_wp
+      do k = 1, pair%n_nodes
+         associate (at => contact%record(pair%node(k)))
+            felt = max(felt, at%impulse(1)**2 + at%impulse(2)**2)
+         end associate
+      end do
+      if (own <= unfelt**2*felt) return
+      if (pair%candidate > 0) then
+         contact%corner_impulse(:, pair%candidate) = fading &
+            *contact%corner_impulse(:, pair%candidate)
+      else
+         contact%edge_impulse(:, -pair%candidate) = fading*contact%edge_impulse(:, -pair%candidate)
+      end if
+   end subroutine loosen_jam
 
    !> Work of the two parts of an impulse over the half steps on either side of it.
    pure subroutine book_work(contact, pressure, friction, before, after)
