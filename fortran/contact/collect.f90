@@ -127,7 +127,7 @@ contains
          do k = 1, 2
             arm(k) = (surfaces%reference(k, a) - surfaces%reference(k, b)) &
                + (surfaces%u(k, a) - surfaces%u(k, b))
-            d(k) = contact%motion(a)%before(k) - contact%motion(b)%before(k)
+            d(k) = contact%record(a)%before(k) - contact%record(b)%before(k)
          end do
          if (arm(1)*arm(1) + arm(2)*arm(2) > max((corner_reach*scales%h)**2, &
             (steps_ahead*scales%dt)**2*(d(1)*d(1) + d(2)*d(2)))) return

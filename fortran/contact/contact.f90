@@ -26,6 +26,12 @@ module lithofrac_contact_contact
       real(wp) :: penetration = 0.0_wp             !! deepest, over h
    end type statistics_type
 
+   !> What is read of a boundary node before and after the sweeps.
+   type :: record_type
+      real(wp) :: before(2) = 0.0_wp               !! velocity at the half step before [m/s]
+      real(wp) :: impulse(2) = 0.0_wp              !! of all its pairs in this step [N s]
+   end type record_type
+
    type :: contact_type
       logical :: on = .false.
       type(surfaces_type) :: surfaces
@@ -48,6 +54,7 @@ module lithofrac_contact_contact
       integer, allocatable :: beside(:)            !! (n) corner pairs of a node in this step
       type(queue_type) :: queue
       type(motion_type), allocatable :: motion(:)  !! (n)
+      type(record_type), allocatable :: record(:)  !! (n)
       integer :: n_loaded = -1                     !! pairs of the step before; -1: not known
       integer, allocatable :: loaded(:)            !! their candidates
       real(wp) :: work_before(2) = 0.0_wp          !! normal, friction: half step before [J]
@@ -78,7 +85,7 @@ contains
       if (status%code /= ok) return
       contact%friction = friction
       associate (n => contact%surfaces%n)
-         allocate (contact%motion(n))
+         allocate (contact%motion(n), contact%record(n))
          allocate (contact%beside(n), contact%queue%newest(n), source=0)
       end associate
       contact%tangent = contact%surfaces%tangent
@@ -122,14 +129,14 @@ contains
          deallocate (contact%kind, contact%face, contact%pairs)
          deallocate (contact%neighbours, contact%corner_friction, contact%edge_friction)
          deallocate (contact%keeper, contact%first_edge, contact%queue%next, contact%queue%now, &
-            contact%loaded)
+            contact%queue%older, contact%loaded)
       end if
       allocate (contact%kind(n_corners), contact%face(2, n_corners))
       allocate (contact%neighbours(n_corners))
       allocate (contact%corner_friction(n_corners), contact%edge_friction(n_edges))
       allocate (contact%pairs(n_corners + n_edges + 1))
       allocate (contact%queue%next(n_corners + n_edges), contact%queue%now(n_corners + n_edges))
-      allocate (contact%loaded(n_corners + n_edges))
+      allocate (contact%queue%older(4, n_corners + n_edges), contact%loaded(n_corners + n_edges))
       allocate (contact%keeper(0:n_corners), contact%first_edge(0:n_corners + 1))
       contact%corner_impulse = spread([0.0_wp, 0.0_wp], 2, n_corners)
       contact%edge_impulse = spread([0.0_wp, 0.0_wp], 2, n_edges)

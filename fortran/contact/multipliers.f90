@@ -20,6 +20,7 @@ module lithofrac_contact_multipliers
    !> Room to remember which pairs have to be solved again.
    type :: queue_type
       integer, allocatable :: newest(:)   !! (n) 4*pair + place, last pair of a boundary node
+      integer, allocatable :: older(:, :) !! (4, pairs) the same for the pair before, by place
       integer, allocatable :: next(:)     !! pairs of the sweep to come
       integer, allocatable :: now(:)      !! pairs of this sweep
    end type queue_type
@@ -40,7 +41,7 @@ contains
       real(wp) :: enough
 
       do i = 1, size(pairs)
-         call link_pair(pairs(i), i, queue%newest)
+         call link_pair(pairs(i), i, queue)
          call add_impulse(pairs(i), pairs(i)%impulse(1), pairs(i)%impulse(2), motion)
       end do
       last = 0
@@ -63,17 +64,17 @@ contains
    end subroutine solve_pairs
 
    !> Chain the pairs of every node, newest first.
-   pure subroutine link_pair(pair, number, newest)
+   pure subroutine link_pair(pair, number, queue)
       type(pair_type), intent(inout) :: pair
       integer, intent(in) :: number
-      integer, intent(inout), contiguous :: newest(:)   !! (n) 4*pair + place of the node in it
+      type(queue_type), intent(inout) :: queue
 
       integer :: k
 
       pair%is_queued = .false.
       do k = 1, pair%n_nodes
-         pair%older(k) = newest(pair%node(k))
-         newest(pair%node(k)) = 4*number + k - 1
+         queue%older(k, number) = queue%newest(pair%node(k))
+         queue%newest(pair%node(k)) = 4*number + k - 1
       end do
    end subroutine link_pair
 
@@ -103,19 +104,19 @@ contains
                dv = abs(pair%weight(k))*max(abs(x)*at%inverse_mass(1), abs(y)*at%inverse_mass(2))
             end associate
             if (dv > share*tolerance) call wake(pairs, i, last_pair, queue%newest(pair%node(k)), &
-               share*tolerance/dv, queue%next, n)
+               share*tolerance/dv, queue, n)
          end do
       end associate
    end subroutine visit_pair
 
    !> Queue the other pairs of a node that has moved, unless they have little weight there.
-   pure subroutine wake(pairs, i, last_pair, newest, least, next, n)
+   pure subroutine wake(pairs, i, last_pair, newest, least, queue, n)
       type(pair_type), intent(inout), contiguous :: pairs(:)
       integer, intent(in) :: i
       integer, intent(in) :: last_pair
       integer, intent(in) :: newest         !! 4*pair + place, of the node
       real(wp), intent(in) :: least         !! weight that counts
-      integer, intent(inout), contiguous :: next(:)
+      type(queue_type), intent(inout) :: queue
       integer, intent(inout) :: n
 
       integer :: entry, other, place
@@ -124,12 +125,12 @@ contains
       do while (entry > 0)
          other = entry/4
          place = modulo(entry, 4) + 1
-         entry = pairs(other)%older(place)
+         entry = queue%older(place, other)
          if (other > last_pair .or. other == i .or. pairs(other)%is_queued) cycle
          if (abs(pairs(other)%weight(place)) <= least) cycle
          pairs(other)%is_queued = .true.
          n = n + 1
-         next(n) = other
+         queue%next(n) = other
       end do
    end subroutine wake
 

@@ -22,18 +22,15 @@ module lithofrac_contact_pairs
    real(wp), parameter :: largest_share = 0.5_wp  !! of a reaction on a corner's neighbours
    real(wp), parameter :: turned = 1.0e-3_wp      !! faces closer than this are one plane [rad]
 
-   !> Motion of a boundary node; together in one line of the cache.
+   !> What the sweeps read of a boundary node; small, so that it stays in the cache.
    type :: motion_type
-      real(wp) :: v(2) = 0.0_wp                    !! velocity without contact, then with [m/s]
-      real(wp) :: inverse_mass(2) = 0.0_wp         !! [1/kg]
-      real(wp) :: before(2) = 0.0_wp               !! velocity at the half step before [m/s]
-      real(wp) :: impulse(2) = 0.0_wp              !! of all its pairs in this step [N s]
+      real(wp) :: v(2) = 0.0_wp               !! velocity without contact, then with [m/s]
+      real(wp) :: inverse_mass(2) = 0.0_wp    !! [1/kg]
    end type motion_type
 
    !> One pair; kept together, and small, because every sweep reads all of it.
    type :: pair_type
       integer :: node(4) = 0                  !! boundary nodes; without weight where not needed
-      integer :: older(4) = 0                 !! pair before it of each node, see `multipliers`
       integer :: n_nodes = 3                  !! 3 or 4
       integer :: n_faces = 0                  !! 0: not a pair of now
       integer :: candidate = 0                !! corner when positive, node and edge when negative

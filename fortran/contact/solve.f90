@@ -132,9 +132,10 @@ contains
       after = 0.0_wp
       before = 0.0_wp
       do k = 1, pair%n_nodes
-         associate (at => contact%motion(pair%node(k)), weight => pair%weight(k))
-            after(1) = after(1) + weight*at%v(1)
-            after(2) = after(2) + weight*at%v(2)
+         associate (at => contact%record(pair%node(k)), v => contact%motion(pair%node(k))%v, &
+               weight => pair%weight(k))
+            after(1) = after(1) + weight*v(1)
+            after(2) = after(2) + weight*v(2)
             before(1) = before(1) + weight*at%before(1)
             before(2) = before(2) + weight*at%before(2)
             at%impulse(1) = at%impulse(1) + weight*pair%impulse(1)

@@ -38,7 +38,7 @@ contains
 
       associate (contact => model%contact)
          do i = 1, contact%surfaces%n
-            contact%motion(i)%before = model%fields%v(:, contact%surfaces%node(i))
+            contact%record(i)%before = model%fields%v(:, contact%surfaces%node(i))
          end do
       end associate
    end subroutine note_velocities
@@ -93,9 +93,8 @@ contains
             associate (at => contact%motion(i), node => contact%surfaces%node(i))
                at%v(1) = fields%v(1, node)
                at%v(2) = fields%v(2, node)
-               at%impulse(1) = 0.0_wp
-               at%impulse(2) = 0.0_wp
             end associate
+            contact%record(i)%impulse = 0.0_wp
          end do
       end associate
    end subroutine bring_velocities
@@ -112,11 +111,14 @@ contains
       associate (contact => model%contact, fields => model%fields)
          do k = 1, size(contact%near)
             node = contact%surfaces%node(contact%near(k))
-            associate (at => contact%motion(contact%near(k)))
-               fields%contact(:, node) = at%impulse*per_step
+            associate (at => contact%record(contact%near(k)), v => contact%motion( &
+                  contact%near(k))%v)
+               fields%contact(1, node) = at%impulse(1)*per_step
+               fields%contact(2, node) = at%impulse(2)*per_step
                if (.not. max(abs(at%impulse(1)), abs(at%impulse(2))) > 0.0_wp) cycle
-               call correct_sums(model, node, at%before, at%v - fields%v(:, node), sums)
-               fields%v(:, node) = at%v
+               call correct_sums(model, node, at%before, v - fields%v(:, node), sums)
+               fields%v(1, node) = v(1)
+               fields%v(2, node) = v(2)
             end associate
          end do
       end associate
