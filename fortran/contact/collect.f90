@@ -127,10 +127,12 @@ contains
          do k = 1, 2
             arm(k) = (surfaces%reference(k, a) - surfaces%reference(k, b)) &
                + (surfaces%u(k, a) - surfaces%u(k, b))
-            d(k) = contact%record(a)%before(k) - contact%record(b)%before(k)
          end do
-         if (arm(1)*arm(1) + arm(2)*arm(2) > max((corner_reach*scales%h)**2, &
-            (steps_ahead*scales%dt)**2*(d(1)*d(1) + d(2)*d(2)))) return
+         if (arm(1)*arm(1) + arm(2)*arm(2) > (corner_reach*scales%h)**2) then
+            d = contact%record(a)%before - contact%record(b)%before
+            if (arm(1)*arm(1) + arm(2)*arm(2) > (steps_ahead*scales%dt)**2 &
+               *(d(1)*d(1) + d(2)*d(2))) return
+         end if
          contact%keeper(i) = corner
          do k = 1, 2
             d(k) = arm(k) + scales%dt*(contact%motion(a)%v(k) - contact%motion(b)%v(k))

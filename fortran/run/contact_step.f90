@@ -30,7 +30,7 @@ contains
       end associate
    end subroutine bring_masses
 
-   !> Keep the velocities of the half step that ends.
+   !> Keep the velocities of the half step that ends, and make room for the impulses of the next.
    pure subroutine note_velocities(model)
       type(model_type), intent(inout) :: model
 
@@ -38,7 +38,12 @@ contains
 
       associate (contact => model%contact)
          do i = 1, contact%surfaces%n
-            contact%record(i)%before = model%fields%v(:, contact%surfaces%node(i))
+            associate (at => contact%record(i), node => contact%surfaces%node(i))
+               at%before(1) = model%fields%v(1, node)
+               at%before(2) = model%fields%v(2, node)
+               at%impulse(1) = 0.0_wp
+               at%impulse(2) = 0.0_wp
+            end associate
          end do
       end associate
    end subroutine note_velocities
@@ -94,7 +99,6 @@ contains
                at%v(1) = fields%v(1, node)
                at%v(2) = fields%v(2, node)
             end associate
-            contact%record(i)%impulse = 0.0_wp
          end do
       end associate
    end subroutine bring_velocities
