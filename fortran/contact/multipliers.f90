@@ -14,8 +14,7 @@ module lithofrac_contact_multipliers
 
    integer, parameter :: early_sweeps = 8  !! slip that goes to and fro needs no more of them
    real(wp), parameter :: late = 8.0_wp    !! tolerance after the early sweeps, over that before
-
-   real(wp), parameter :: share = 0.25_wp !! of the tolerance that one pair may do to another unseen
+   real(wp), parameter :: share = 0.25_wp  !! of it that one pair may do to another unseen
 
    !> Room to remember which pairs have to be solved again.
    type :: queue_type
@@ -48,7 +47,7 @@ contains
       do i = 1, size(pairs)
          call visit_pair(pairs, i, i - 1, motion, tolerance, queue, last)
       end do
-      do sweeps = 1, most_sweeps
+      do sweeps = 1, most_sweeps - 1
          converged = last == 0
          if (converged) return
          first = last
@@ -61,6 +60,7 @@ contains
             call visit_pair(pairs, i, size(pairs), motion, enough, queue, last)
          end do
       end do
+      converged = last == 0
    end subroutine solve_pairs
 
    !> Chain the pairs of every node, newest first.
