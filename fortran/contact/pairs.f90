@@ -96,6 +96,8 @@ contains
       is_outside = .true.
       do side = 1, 2
          edge = merge(surfaces%prev(j), surfaces%next(j), side == 1)
+         ! At the tip of a crack the next face is the node's own.
+         if (edge == i .or. surfaces%next(edge) == i) cycle
          associate (t => surfaces%tangent(:, j), s => surfaces%tangent(:, edge))
             if ((s(1)*t(2) - s(2)*t(1))*merge(1, -1, side == 1) <= 0.0_wp) cycle
             if (across(offset(surfaces, i, edge), s) > gap) return
