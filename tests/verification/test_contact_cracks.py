@@ -4,10 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from contact_models import ROCK, contact_problem, split, uniform_strain
+from contact_models import (
+    ROCK,
+    contact_problem,
+    deepest_overlap,
+    split,
+    split_between,
+    uniform_strain,
+)
 from models import hold, rectangle
 
 from lithofrac.core import Run
+from lithofrac.problem import Damping, Ramp
 
 pytestmark = pytest.mark.verification
 
@@ -116,3 +124,32 @@ def test_a_crack_tip_inside_a_body_holds():
     run.advance(2000)
     assert run.energy().kinetic < 1e-18 * elastic
     assert run.contact_statistics().pairs_max == len(inner)
+
+
+@pytest.mark.parametrize(("length", "speed"), [(2, 12.0), (4, 6.0), (6, 6.0)])
+def test_faces_of_a_short_crack_slide_and_do_not_overlap(length, speed, n=16, size=0.02):
+    """A crack between two tips, `length` edges long, under pressure and shear: its faces slide by
+    more than the reach of the corners, so nodes stand over the faces next to the tips."""
+    mesh = rectangle(n, n, size, size)
+    whole = np.flatnonzero(abs(mesh.nodes[:, 0] - size / 2) > (length - 1) / 2 * size / n)
+    mesh = split_between(mesh, (mesh.centroids()[:, 1] > size / 2).astype(int), whole)
+    assert len(mesh.nodes) == (n + 1) ** 2 + length - 1
+    y = mesh.nodes[:, 1]
+    low, high = np.flatnonzero(y < 1e-9), np.flatnonzero(y > size - 1e-9)
+    loads = (hold("low y", low, 1), hold("high y", high, 1))
+    loads += (hold("low x", low, 0, -speed, ramp=Ramp(0, 2e-5)),)
+    loads += (hold("high x", high, 0, speed, ramp=Ramp(0, 2e-5)),)
+    problem = contact_problem(mesh, ROCK, friction=0.1, velocity_loads=loads)
+    run = Run(replace(problem, damping=Damping(0.3)))
+    run.set_motion(uniform_strain(mesh, 0.0, -0.02), 0.0 * mesh.nodes)
+    copy = len(mesh.nodes) - 1
+    twin = (mesh.nodes[:copy] == mesh.nodes[copy]).all(axis=1).argmax()
+    slip = overlap = 0.0
+    for _ in range(30):
+        run.advance(20)
+        moved = run.nodes()[0]
+        slip = max(slip, abs(moved[copy, 0] - moved[twin, 0]))
+        overlap = max(overlap, deepest_overlap(run))
+    print(f"slip {slip / (size / n):.3f}, overlap {overlap:.1e} of an edge")
+    assert slip > 0.03 * size / n
+    assert overlap < 5e-4
