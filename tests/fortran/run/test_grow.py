@@ -119,3 +119,18 @@ def test_pressure_stays_on_a_side_that_is_cut(cracking):
     run.advance(600)
     assert run.sizes().cracks > 10
     np.testing.assert_allclose(run.loads()[2][0], before[0], rtol=1e-12)
+
+
+def test_momentum_of_the_parts_is_that_of_the_nodes(cracking):
+    """Every element has a third of its mass at each corner."""
+    run = cracking("burst", "intra_element").start()
+    run.advance(600)
+    _, triangles, _, alive = run.mesh()
+    _, velocity, mass = run.nodes()
+    rows, part = fragments(run), run.parts()
+    loose = np.isin(part, rows[:, 1])
+    ours = np.unique(triangles[loose])
+    assert not np.isin(triangles[alive & ~loose], ours).any(), "no node is shared by two parts"
+    assert rows[:, 5].sum() == pytest.approx(mass[ours].sum(), rel=1e-12)
+    assert rows[:, 3].sum() == loose.sum()
+    np.testing.assert_allclose(rows[:, 5] @ rows[:, 8:10], mass[ours] @ velocity[ours], rtol=1e-12)
