@@ -15,7 +15,7 @@ module lithofrac_run_grow
    use lithofrac_mechanics_fields, only: inelastic_type, move_inelastic, new_inelastic, prescribe
    use lithofrac_mechanics_follow_loads, only: follow_pressure, follow_velocity
    use lithofrac_mechanics_internal_force, only: element_force
-   use lithofrac_mechanics_loads, only: add_forces
+   use lithofrac_mechanics_loads, only: add_forces, prescribed_kinetic, work_after, work_before
    use lithofrac_mesh_edge_set, only: edge_nodes, follow_edges
    use lithofrac_mesh_edits, only: edits_type, inherit
    use lithofrac_mesh_mesh, only: living_part
@@ -39,9 +39,9 @@ contains
       type(status_type), intent(out) :: status
 
       integer :: i
-      real(wp) :: kinetic
+      real(wp) :: energy(4)
 
-      kinetic = half_step_energy(model)
+      energy = energies(model)
       call grow_elements(model, edits)
       call inherit(edits, model%fields%u)
       call inherit(edits, model%fields%v)
@@ -56,11 +56,23 @@ contains
       call rebuild(model, status)
       if (status%code /= ok) return
       call renew_forces(model, edits)
-      if (edits%n_elements == 0) return
-      kinetic = half_step_energy(model) - kinetic
-      model%ledger%relump = model%ledger%relump + kinetic
-      model%sums(1, size(model%sums, 2)) = model%sums(1, size(model%sums, 2)) + kinetic
+      if (edits%n_elements > 0) call book_relump(model, energies(model) - energy)
    end subroutine grow
+
+   !> Mass and forces have gone to new nodes on edges that were cut.
+   !>
+   !> A new node between a driven and a free one is free, so reactions change; but both half
+   !> steps around now have had the old ones.
+   subroutine book_relump(model, change)
+      type(model_type), intent(inout) :: model
+      real(wp), intent(in) :: change(4)         !! of `energies`
+
+      associate (ledger => model%ledger, kinetic => model%sums(1, size(model%sums, 2)))
+         ledger%relump = ledger%relump + change(1)
+         ledger%external = ledger%external - change(3) - change(4)
+         kinetic = kinetic + change(1) - change(2) - change(4)
+      end associate
+   end subroutine book_relump
 
    !> All that follows from mesh, topology, heirs and loads; nodal fields get their new length.
    subroutine rebuild(model, status)
@@ -263,6 +275,20 @@ contains
       sums(:, size(sums, 2)) = model%sums(:, n)
       call move_alloc(sums, model%sums)
    end subroutine resize_sums
+
+   !> Kinetic energy at the half step, what the sums lack of the present one, and work of the
+   !> loads in the half steps before and after now [J].
+   pure function energies(model)
+      type(model_type), intent(in) :: model
+      real(wp) :: energies(4)
+
+      associate (velocities => model%velocities, pressures => model%pressures, &
+            fields => model%fields)
+         energies = [half_step_energy(model), prescribed_kinetic(velocities, fields), &
+            work_before(velocities, pressures, model%dt, fields), &
+            work_after(velocities, pressures, model%dt, fields)]
+      end associate
+   end function energies
 
    !> Kinetic energy at the half step [J].
    pure function half_step_energy(model) result(energy)
