@@ -9,11 +9,7 @@ OUT = config.get("out", "out")
 ENTRIES = load_suite(SUITE)
 CASES = {name: ENTRIES.case(name).resolved() for name in ENTRIES.cases}
 SCENES = {case["title"]: name for name, case in reversed(CASES.items())}.values()
-DISCRETE = [
-    name
-    for name, case in CASES.items()
-    if case.get("fracture", {}).get("mode", "off") != "off"
-]
+DISCRETE = [name for name, case in CASES.items() if case["fracture"]["mode"] != "off"]
 
 ROCKS = ["quartzite", "sandstone", "tyndall_limestone"]
 CONFINEMENTS = ["00", "01", "02", "05", "10", "15", "20", "30", "40"]  # MPa
@@ -40,7 +36,7 @@ TABLES = {
     **{"zigong": [], "zigong_fit": []},
     "kirsch": [run for run in RUNS if "/kirsch" in run],
     "run_time": RUNS,
-    **{"cracks": RUNS, "bands": RUNS},
+    **{"cracks": RUNS, "bands": RUNS, "punch": RUNS},
 }
 COMPARED = {
     "punch": [run for run in RUNS if "/punch_" in run],

@@ -5,7 +5,8 @@ module lithofrac_contact_contact
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: bad_input, ok, set_failure, status_type
    use lithofrac_contact_corners, only: classify
-   use lithofrac_contact_pairs, only: pair_type
+   use lithofrac_contact_multipliers, only: queue_type
+   use lithofrac_contact_pairs, only: motion_type, pair_type
    use lithofrac_contact_search, only: candidates_type, list_candidates
    use lithofrac_contact_surfaces, only: new_surfaces, surfaces_type
    use lithofrac_mesh_mesh, only: mesh_type
@@ -26,11 +27,18 @@ module lithofrac_contact_contact
       real(wp) :: penetration = 0.0_wp             !! deepest, over h
    end type statistics_type
 
+   !> What is read of a boundary node before and after the sweeps.
+   type :: record_type
+      real(wp) :: before(2) = 0.0_wp               !! velocity at the half step before [m/s]
+      real(wp) :: impulse(2) = 0.0_wp              !! of all its pairs in this step [N s]
+   end type record_type
+
    type :: contact_type
       logical :: on = .false.
       type(surfaces_type) :: surfaces
       real(wp), allocatable :: friction(:, :)      !! (n_tags, n_tags)
       type(candidates_type) :: candidates
+      integer, allocatable :: near(:)              !! boundary nodes and edges of the candidates
       integer, allocatable :: kind(:)              !! (n_corners)
       integer, allocatable :: face(:, :)           !! (2, n_corners)
       logical, allocatable :: neighbours(:)        !! (n_corners) nothing stands between
@@ -41,10 +49,15 @@ module lithofrac_contact_contact
       real(wp), allocatable :: edge_impulse(:, :)  !! (2, n_edges)
       type(pair_type), allocatable :: pairs(:)     !! room for every candidate
       integer :: n_pairs = 0
-      real(wp), allocatable :: inverse_mass(:, :)  !! (2, n) [1/kg]
-      real(wp), allocatable :: before(:, :)        !! (2, n) velocity at the half step before [m/s]
-      real(wp), allocatable :: v(:, :)             !! (2, n) and after it [m/s]
-      real(wp), allocatable :: impulse(:, :)       !! (2, n) sum on the node [N s]
+      integer, allocatable :: first_edge(:)        !! (0:n_corners + 1) into `edge_order`
+      integer, allocatable :: edge_order(:)        !! node-edge pairs by their corner, 0 for none
+      integer, allocatable :: keeper(:)            !! (0:n_corners) who keeps the two nodes apart
+      integer, allocatable :: beside(:)            !! (n) corner pairs of a node in this step
+      type(queue_type) :: queue
+      type(motion_type), allocatable :: motion(:)  !! (n)
+      type(record_type), allocatable :: record(:)  !! (n)
+      integer :: n_loaded = -1                     !! pairs of the step before; -1: not known
+      integer, allocatable :: loaded(:)            !! their candidates
       real(wp) :: work_before(2) = 0.0_wp          !! normal, friction: half step before [J]
       real(wp) :: work_after(2) = 0.0_wp           !! and after [J]
       real(wp) :: fastest = 0.0_wp                 !! relative velocity of a pair in this step [m/s]
@@ -80,10 +93,12 @@ contains
    subroutine resize_motion(contact)
       type(contact_type), intent(inout) :: contact
 
-      contact%before = spread([0.0_wp, 0.0_wp], 2, contact%surfaces%n)
-      contact%inverse_mass = contact%before
-      contact%v = contact%before
-      contact%impulse = contact%before
+      if (allocated(contact%motion)) deallocate (contact%motion, contact%record, contact%beside, &
+         contact%queue%newest)
+      associate (n => contact%surfaces%n)
+         allocate (contact%motion(n), contact%record(n))
+         allocate (contact%beside(n), contact%queue%newest(n), source=0)
+      end associate
       contact%tangent = contact%surfaces%tangent
       contact%candidates%u = contact%surfaces%u
    end subroutine resize_motion
@@ -123,11 +138,16 @@ contains
       if (allocated(contact%kind)) then
          deallocate (contact%kind, contact%face, contact%pairs)
          deallocate (contact%neighbours, contact%corner_friction, contact%edge_friction)
+         deallocate (contact%keeper, contact%first_edge, contact%queue%next, contact%queue%now, &
+            contact%queue%older, contact%loaded)
       end if
       allocate (contact%kind(n_corners), contact%face(2, n_corners))
       allocate (contact%neighbours(n_corners))
       allocate (contact%corner_friction(n_corners), contact%edge_friction(n_edges))
       allocate (contact%pairs(n_corners + n_edges + 1))
+      allocate (contact%queue%next(n_corners + n_edges), contact%queue%now(n_corners + n_edges))
+      allocate (contact%queue%older(4, n_corners + n_edges), contact%loaded(n_corners + n_edges))
+      allocate (contact%keeper(0:n_corners), contact%first_edge(0:n_corners + 1))
       contact%corner_impulse = spread([0.0_wp, 0.0_wp], 2, n_corners)
       contact%edge_impulse = spread([0.0_wp, 0.0_wp], 2, n_edges)
       associate (list => contact%candidates, prev => contact%surfaces%prev)
@@ -141,7 +161,62 @@ contains
                list%edge(1, i)], [list%edge(2, i)])
          end do
       end associate
+      call order_edges(contact)
+      call find_near(contact)
+      contact%n_loaded = -1
    end subroutine prepare_list
+
+   !> Sort the node-edge pairs by a corner that the node makes with an end of the edge: while that
+   !> corner has a pair nobody needs to look at them.
+   pure subroutine order_edges(contact)
+      type(contact_type), intent(inout) :: contact
+
+      integer :: place(0:size(contact%kind)), i, corner
+
+      associate (corner_at => contact%candidates%corner_at, first => contact%first_edge)
+         first = 0
+         do i = 1, size(corner_at, 2)
+            corner = corner_at(merge(1, 2, corner_at(1, i) > 0), i)
+            first(corner + 1) = first(corner + 1) + 1
+         end do
+         first(0) = 1
+         do corner = 0, size(contact%kind)
+            place(corner) = first(corner)
+            first(corner + 1) = first(corner + 1) + first(corner)
+         end do
+         if (allocated(contact%edge_order)) deallocate (contact%edge_order)
+         allocate (contact%edge_order(size(corner_at, 2)))
+         do i = 1, size(corner_at, 2)
+            corner = corner_at(merge(1, 2, corner_at(1, i) > 0), i)
+            contact%edge_order(place(corner)) = i
+            place(corner) = place(corner) + 1
+         end do
+      end associate
+   end subroutine order_edges
+
+   !> Boundary nodes that a pair of the list may move, and edges that it may look at, ascending.
+   pure subroutine find_near(contact)
+      type(contact_type), intent(inout) :: contact
+
+      logical :: is_near(contact%surfaces%n)
+      integer :: i
+
+      is_near = .false.
+      associate (list => contact%candidates, prev => contact%surfaces%prev, &
+            next => contact%surfaces%next)
+         do i = 1, size(list%corner, 2)
+            is_near(list%corner(:, i)) = .true.
+            is_near(prev(list%corner(:, i))) = .true.
+            is_near(next(list%corner(:, i))) = .true.
+         end do
+         do i = 1, size(list%edge, 2)
+            is_near(list%edge(:, i)) = .true.
+            is_near(next(list%edge(2, i))) = .true.
+            is_near(prev(list%edge(2, i))) = .true.
+         end do
+      end associate
+      contact%near = pack([(i, i=1, size(is_near))], is_near)
+   end subroutine find_near
 
    !> Copy the values of pairs that are in both lists; both are sorted.
    pure subroutine carry_over(old_pair, old_value, new_pair, new_value)
@@ -180,25 +255,52 @@ contains
       type(contact_type), intent(inout) :: contact
 
       logical :: turned(contact%surfaces%n)
-      integer :: i
+      integer :: i, k
 
+      if (.not. has_turned(contact)) return
+      turned = .false.
       associate (t => contact%surfaces%tangent, old => contact%tangent)
-         do i = 1, contact%surfaces%n
-            turned(i) = (t(1, i) - old(1, i))**2 + (t(2, i) - old(2, i))**2 > rotated
-         end do
-         if (.not. any(turned)) return
-         do i = 1, contact%surfaces%n
+         do k = 1, size(contact%near)
+            i = contact%near(k)
+            turned(i) = turn_of(t(1, i), t(2, i), old(1, i), old(2, i)) > rotated
             if (turned(i)) old(:, i) = t(:, i)
          end do
       end associate
       associate (corner => contact%candidates%corner, prev => contact%surfaces%prev)
          do i = 1, size(corner, 2)
-            if (any(turned(corner(:, i))) .or. any(turned(prev(corner(:, i))))) then
-               call classify_corner(contact, i)
-            end if
+            associate (a => corner(1, i), b => corner(2, i))
+               if (turned(a) .or. turned(b) .or. turned(prev(a)) .or. turned(prev(b))) then
+                  call classify_corner(contact, i)
+               end if
+            end associate
          end do
       end associate
    end subroutine turn_corners
+
+   pure function has_turned(contact)
+      type(contact_type), intent(in) :: contact
+      logical :: has_turned
+
+      integer :: i, k
+
+      has_turned = .true.
+      associate (t => contact%surfaces%tangent, old => contact%tangent)
+         do k = 1, size(contact%near)
+            i = contact%near(k)
+            if (turn_of(t(1, i), t(2, i), old(1, i), old(2, i)) > rotated) return
+         end do
+      end associate
+      has_turned = .false.
+   end function has_turned
+
+   !> Squared angle between two unit vectors, small [rad2].
+   pure function turn_of(x, y, old_x, old_y) result(turn)
+      real(wp), intent(in) :: x, y
+      real(wp), intent(in) :: old_x, old_y
+      real(wp) :: turn
+
+      turn = (x - old_x)**2 + (y - old_y)**2
+   end function turn_of
 
    !> Choice: where faces of different friction meet in a corner, the largest holds.
    pure function friction_of(contact, first, second) result(friction)

@@ -1,98 +1,204 @@
 !> Block Gauss-Seidel over pairs: every pair is solved exactly in turn, until none changes.
 !>
-!> Sweeps go forward and backward in turn and start from the impulses of the step before. The
-!> order of the pairs alone decides the bits of the result.
+!> Starts from the impulses of the step before. The first sweep solves every pair, each later one
+!> only those whose nodes another pair has moved since, in the opposite direction to the sweep
+!> before. The order of the pairs alone decides the bits of the result.
 module lithofrac_contact_multipliers
    use lithofrac_base_kinds, only: wp
    use lithofrac_contact_friction, only: one_face, two_faces
-   use lithofrac_contact_pairs, only: pair_type
+   use lithofrac_contact_pairs, only: motion_type, pair_type
    implicit none
    private
 
-   public :: relative_velocity, solve_pairs
+   public :: queue_type, solve_pairs
+
+   integer, parameter :: early_sweeps = 8  !! slip that goes to and fro needs no more of them
+   real(wp), parameter :: late = 8.0_wp    !! tolerance after the early sweeps, over that before
+   real(wp), parameter :: share = 0.25_wp  !! of it that one pair may do to another unseen
+
+   !> Room to remember which pairs have to be solved again.
+   type :: queue_type
+      integer, allocatable :: newest(:)   !! (n) 4*pair + place, last pair of a boundary node
+      integer, allocatable :: older(:, :) !! (4, pairs) the same for the pair before, by place
+      integer, allocatable :: next(:)     !! pairs of the sweep to come
+      integer, allocatable :: now(:)      !! pairs of this sweep
+   end type queue_type
 
 contains
 
    !> Find the impulses; velocities come out with them.
-   pure subroutine solve_pairs(pairs, inverse_mass, tolerance, most_sweeps, v, sweeps, converged)
-      type(pair_type), intent(inout) :: pairs(:)    !! `impulse` in: a guess, out: the solution
-      real(wp), intent(in), contiguous :: inverse_mass(:, :)  !! (2, n) [1/kg]
+   pure subroutine solve_pairs(pairs, motion, tolerance, most_sweeps, queue, sweeps, converged)
+      type(pair_type), intent(inout), contiguous :: pairs(:)  !! `impulse` a guess, the solution
+      type(motion_type), intent(inout), contiguous :: motion(:)  !! (n)
       real(wp), intent(in) :: tolerance             !! change of a relative velocity [m/s]
       integer, intent(in) :: most_sweeps
-      real(wp), intent(inout), contiguous :: v(:, :)  !! (2, n) without contact, then with [m/s]
+      type(queue_type), intent(inout) :: queue      !! `newest` 0 where pairs are
       integer, intent(out) :: sweeps
       logical, intent(out) :: converged
 
-      real(wp) :: change, p(2)
-      integer :: i, k
+      integer :: i, k, first, last
+      real(wp) :: enough
 
       do i = 1, size(pairs)
-         p = pairs(i)%impulse
-         if (p(1)*p(1) + p(2)*p(2) > 0.0_wp) call add_impulse(pairs(i), p, inverse_mass, v)
+         call link_pair(pairs(i), i, queue)
+         call add_impulse(pairs(i), pairs(i)%impulse(1), pairs(i)%impulse(2), motion)
       end do
-      converged = .false.
-      do sweeps = 1, most_sweeps
-         change = 0.0_wp
-         do k = 1, size(pairs)
-            i = merge(k, size(pairs) + 1 - k, modulo(sweeps, 2) == 1)
-            call solve_pair(pairs(i), v, p)
-            if (.not. max(abs(p(1)), abs(p(2))) > 0.0_wp) cycle
-            pairs(i)%impulse = pairs(i)%impulse + p
-            call add_impulse(pairs(i), p, inverse_mass, v)
-            change = max(change, abs(p(1))*pairs(i)%compliance(1), &
-               abs(p(2))*pairs(i)%compliance(2))
-         end do
-         converged = change <= tolerance
+      last = 0
+      do i = 1, size(pairs)
+         call visit_pair(pairs, i, i - 1, motion, tolerance, queue, last)
+      end do
+      do sweeps = 1, most_sweeps - 1
+         converged = last == 0
          if (converged) return
+         first = last
+         enough = merge(tolerance, late*tolerance, sweeps <= early_sweeps)
+         queue%now(:last) = queue%next(:last)
+         last = 0
+         do k = first, 1, -1
+            i = queue%now(k)
+            pairs(i)%is_queued = .false.
+            call visit_pair(pairs, i, size(pairs), motion, enough, queue, last)
+         end do
       end do
-      sweeps = most_sweeps
+      converged = last == 0
    end subroutine solve_pairs
 
-   !> Change of the impulse of one pair when all others keep theirs.
-   pure subroutine solve_pair(pair, v, change)
+   !> Chain the pairs of every node, newest first.
+   pure subroutine link_pair(pair, number, queue)
+      type(pair_type), intent(inout) :: pair
+      integer, intent(in) :: number
+      type(queue_type), intent(inout) :: queue
+
+      integer :: k
+
+      pair%is_queued = .false.
+      do k = 1, pair%n_nodes
+         queue%older(k, number) = queue%newest(pair%node(k))
+         queue%newest(pair%node(k)) = 4*number + k - 1
+      end do
+   end subroutine link_pair
+
+   !> Solve pair `i`; queue the pairs that feel it.
+   pure subroutine visit_pair(pairs, i, last_pair, motion, tolerance, queue, n)
+      type(pair_type), intent(inout), contiguous :: pairs(:)
+      integer, intent(in) :: i
+      integer, intent(in) :: last_pair      !! those behind it are still to be visited
+      type(motion_type), intent(inout), contiguous :: motion(:)
+      real(wp), intent(in) :: tolerance     !! change of a relative velocity [m/s]
+      type(queue_type), intent(inout) :: queue
+      integer, intent(inout) :: n           !! pairs in the queue
+
+      real(wp) :: p(2), x, y, dv
+      integer :: k
+
+      call solve_pair(pairs(i), motion, p)
+      associate (pair => pairs(i))
+         x = p(1) - pair%impulse(1)
+         y = p(2) - pair%impulse(2)
+         if (.not. max(abs(x), abs(y)) > 0.0_wp) return
+         pair%impulse(1) = p(1)
+         pair%impulse(2) = p(2)
+         call add_impulse(pair, x, y, motion)
+         do k = 1, pair%n_nodes
+            associate (at => motion(pair%node(k)))
+               dv = abs(pair%weight(k))*max(abs(x)*at%inverse_mass(1), abs(y)*at%inverse_mass(2))
+            end associate
+            if (dv > share*tolerance) call wake(pairs, i, last_pair, queue%newest(pair%node(k)), &
+               share*tolerance/dv, queue, n)
+         end do
+      end associate
+   end subroutine visit_pair
+
+   !> Queue the other pairs of a node that has moved, unless they have little weight there.
+   pure subroutine wake(pairs, i, last_pair, newest, least, queue, n)
+      type(pair_type), intent(inout), contiguous :: pairs(:)
+      integer, intent(in) :: i
+      integer, intent(in) :: last_pair
+      integer, intent(in) :: newest         !! 4*pair + place, of the node
+      real(wp), intent(in) :: least         !! weight that counts
+      type(queue_type), intent(inout) :: queue
+      integer, intent(inout) :: n
+
+      integer :: entry, other, place
+
+      entry = newest
+      do while (entry > 0)
+         other = entry/4
+         place = modulo(entry, 4) + 1
+         entry = queue%older(place, other)
+         if (other > last_pair .or. other == i .or. pairs(other)%is_queued) cycle
+         if (abs(pairs(other)%weight(place)) <= least) cycle
+         pairs(other)%is_queued = .true.
+         n = n + 1
+         queue%next(n) = other
+      end do
+   end subroutine wake
+
+   !> Impulse of one pair when all others keep theirs.
+   !>
+   !> The common cases stand here: a pair that is open or sticks, two faces that press both. All
+   !> others are left to the closed forms of `friction`.
+   pure subroutine solve_pair(pair, motion, p)
       type(pair_type), intent(in) :: pair
-      real(wp), intent(in), contiguous :: v(:, :)
-      real(wp), intent(out) :: change(2)            !! [N s]
+      type(motion_type), intent(in), contiguous :: motion(:)
+      real(wp), intent(out) :: p(2)                 !! [N s]
 
-      real(wp) :: d0(2)
+      real(wp) :: d(2), normal, along, turn
+      integer :: k
 
-      d0 = relative_velocity(pair, v) - pair%compliance*pair%impulse
-      if (pair%n_faces == 1) then
-         change = one_face(d0, pair%normal(:, 1), pair%bias(1), pair%friction, pair%compliance)
-      else
-         change = two_faces(d0, pair%normal, pair%bias, pair%friction, pair%compliance)
-      end if
-      change = change - pair%impulse
+      associate (n => pair%normal)
+         d = 0.0_wp
+         do k = 1, pair%n_nodes
+            d(1) = d(1) + pair%weight(k)*motion(pair%node(k))%v(1)
+            d(2) = d(2) + pair%weight(k)*motion(pair%node(k))%v(2)
+         end do
+         ! what takes the pair to rest at its faces
+         p(1) = pair%impulse(1) + (pair%rest(1) - d(1))*pair%stiffness(1)
+         p(2) = pair%impulse(2) + (pair%rest(2) - d(2))*pair%stiffness(2)
+         if (pair%n_faces == 1) then
+            normal = p(1)*n(1, 1) + p(2)*n(2, 1)
+            along = p(2)*n(1, 1) - p(1)*n(2, 1)
+            if (normal > 0.0_wp .and. abs(along) <= pair%friction*normal) return
+         else
+            turn = n(1, 1)*n(2, 2) - n(2, 1)*n(1, 2)
+            if (turn*(p(1)*n(2, 2) - p(2)*n(1, 2)) > 0.0_wp .and. &
+               turn*(n(1, 1)*p(2) - n(2, 1)*p(1)) > 0.0_wp) return
+         end if
+      end associate
+      p = limited(pair, d)
    end subroutine solve_pair
 
-   !> Velocity of the node against what it may touch [m/s].
-   pure function relative_velocity(pair, v) result(d)
+   !> Impulse of a pair that may open or slide.
+   pure function limited(pair, d) result(p)
       type(pair_type), intent(in) :: pair
-      real(wp), intent(in), contiguous :: v(:, :)   !! (2, n) [m/s]
-      real(wp) :: d(2)
+      real(wp), intent(in) :: d(2)                  !! relative velocity with its impulse [m/s]
+      real(wp) :: p(2)
 
-      integer :: k
+      real(wp) :: d0(2), w(2), bias(2)
 
-      d = 0.0_wp
-      do k = 1, pair%n_nodes
-         d(1) = d(1) + pair%weight(k)*v(1, pair%node(k))
-         d(2) = d(2) + pair%weight(k)*v(2, pair%node(k))
-      end do
-   end function relative_velocity
+      w = 1.0_wp/pair%stiffness
+      d0 = d - w*pair%impulse
+      bias(1) = -(pair%rest(1)*pair%normal(1, 1) + pair%rest(2)*pair%normal(2, 1))
+      if (pair%n_faces == 1) then
+         p = one_face(d0, pair%normal(:, 1), bias(1), pair%friction, w)
+      else
+         bias(2) = -(pair%rest(1)*pair%normal(1, 2) + pair%rest(2)*pair%normal(2, 2))
+         p = two_faces(d0, pair%normal, bias, pair%friction, w)
+      end if
+   end function limited
 
    !> Change the velocities by an impulse of the pair.
-   pure subroutine add_impulse(pair, p, inverse_mass, v)
+   pure subroutine add_impulse(pair, x, y, motion)
       type(pair_type), intent(in) :: pair
-      real(wp), intent(in) :: p(2)                  !! [N s]
-      real(wp), intent(in), contiguous :: inverse_mass(:, :)
-      real(wp), intent(inout), contiguous :: v(:, :)
+      real(wp), intent(in) :: x, y                  !! [N s]
+      type(motion_type), intent(inout), contiguous :: motion(:)
 
       integer :: k
 
       do k = 1, pair%n_nodes
-         associate (node => pair%node(k))
-            v(1, node) = v(1, node) + inverse_mass(1, node)*(pair%weight(k)*p(1))
-            v(2, node) = v(2, node) + inverse_mass(2, node)*(pair%weight(k)*p(2))
+         associate (at => motion(pair%node(k)))
+            at%v(1) = at%v(1) + at%inverse_mass(1)*(pair%weight(k)*x)
+            at%v(2) = at%v(2) + at%inverse_mass(2)*(pair%weight(k)*y)
          end associate
       end do
    end subroutine add_impulse

@@ -12,62 +12,73 @@ module lithofrac_contact_pairs
    implicit none
    private
 
-   public :: corner_pair, corner_reach, edge_pair, feasible_bias, pair_type
+   public :: corner_pair, corner_reach, edge_pair, motion_type, pair_type
 
    real(wp), parameter :: reach = 0.1_wp          !! gaps beyond it are left out, over h
    real(wp), parameter :: depth = 0.01_wp         !! deeper is not behind this face, over h
    real(wp), parameter :: corner_reach = 0.02_wp  !! two nodes make a corner within it, over h
    real(wp), parameter :: inside = 1.0e-6_wp      !! a node is over an edge from here on
-   real(wp), parameter :: slop = 1.0e-6_wp        !! penetration left alone, over h
-   real(wp), parameter :: recovery = 0.2_wp       !! of a deeper one, in a critical step
-   real(wp), parameter :: push = 1.0e-4_wp        !! largest recovery in a critical step, over h
    real(wp), parameter :: separate = 1.0e-9_wp    !! a normal separates above minus this, over h
    real(wp), parameter :: largest_share = 0.5_wp  !! of a reaction on a corner's neighbours
    real(wp), parameter :: turned = 1.0e-3_wp      !! faces closer than this are one plane [rad]
 
-   !> One pair; kept together because a sweep reads all of it and nothing else.
+   !> What the sweeps read of a boundary node; small, so that it stays in the cache.
+   type :: motion_type
+      real(wp) :: v(2) = 0.0_wp               !! velocity without contact, then with [m/s]
+      real(wp) :: inverse_mass(2) = 0.0_wp    !! [1/kg]
+   end type motion_type
+
+   !> One pair; kept together, and small, because every sweep reads all of it.
    type :: pair_type
-      integer :: n_nodes = 3
-      integer :: node(4) = 0                  !! boundary nodes
+      integer :: node(4) = 0                  !! boundary nodes; without weight where not needed
+      integer :: n_nodes = 3                  !! 3 or 4
       integer :: n_faces = 0                  !! 0: not a pair of now
       integer :: candidate = 0                !! corner when positive, node and edge when negative
+      logical :: is_queued = .false.          !! has to be solved again
       real(wp) :: weight(4) = 0.0_wp          !! relative velocity is sum(weight*v)
       real(wp) :: normal(2, 2) = 0.0_wp       !! (component, face), unit
-      real(wp) :: gap(2) = 0.0_wp             !! [m]
-      real(wp) :: bias(2) = 0.0_wp            !! [m/s]
+      real(wp) :: rest(2) = 0.0_wp            !! relative velocity that just closes all faces [m/s]
+      real(wp) :: stiffness(2) = 0.0_wp       !! impulse for a change of it, > 0 [kg]
       real(wp) :: friction = 0.0_wp
-      real(wp) :: compliance(2) = 0.0_wp      !! [1/kg]
       real(wp) :: impulse(2) = 0.0_wp         !! of this step [N s]
    end type pair_type
 
 contains
 
    !> Node `i` against edge `j`.
-   pure subroutine edge_pair(surfaces, i, j, pair)
+   pure subroutine edge_pair(surfaces, i, j, pair, gap)
       type(surfaces_type), intent(in) :: surfaces
       integer, intent(in) :: i
       integer, intent(in) :: j
       type(pair_type), intent(inout) :: pair   !! `n_faces` 0 when they cannot touch now
+      real(wp), intent(out) :: gap             !! [m]
 
-      real(wp) :: arm(2), share, gap
+      real(wp) :: x, y, share
 
       pair%n_faces = 0
-      arm = (surfaces%reference(:, i) - surfaces%reference(:, j)) &
-         + (surfaces%u(:, i) - surfaces%u(:, j))
+      x = (surfaces%reference(1, i) - surfaces%reference(1, j)) + (surfaces%u(1, i) &
+         - surfaces%u(1, j))
+      y = (surfaces%reference(2, i) - surfaces%reference(2, j)) + (surfaces%u(2, i) &
+         - surfaces%u(2, j))
       associate (tangent => surfaces%tangent(:, j), h => surfaces%h)
-         gap = arm(1)*tangent(2) - arm(2)*tangent(1)
+         gap = x*tangent(2) - y*tangent(1)
          if (.not. (gap >= -depth*h .and. gap <= reach*h)) return
-         share = dot_product(arm, tangent)/surfaces%length(j)
+         share = (x*tangent(1) + y*tangent(2))/surfaces%length(j)
          if (share < inside .or. share > 1.0_wp - inside) return
          if (gap < 0.0_wp) then
             if (is_outside_neighbour(surfaces, i, j, gap)) return
          end if
          pair%n_faces = 1
          pair%n_nodes = 3
-         pair%node(:3) = [i, j, surfaces%next(j)]
-         pair%weight(:3) = [1.0_wp, share - 1.0_wp, -share]
-         pair%normal(:, 1) = [tangent(2), -tangent(1)]
-         pair%gap(1) = gap
+         pair%node(1) = i
+         pair%node(2) = j
+         pair%node(3) = surfaces%next(j)
+         pair%node(4) = j
+         pair%weight(1) = 1.0_wp
+         pair%weight(2) = share - 1.0_wp
+         pair%weight(3) = -share
+         pair%normal(1, 1) = tangent(2)
+         pair%normal(2, 1) = -tangent(1)
       end associate
    end subroutine edge_pair
 
@@ -85,6 +96,8 @@ contains
       is_outside = .true.
       do side = 1, 2
          edge = merge(surfaces%prev(j), surfaces%next(j), side == 1)
+         ! At the tip of a crack the next face is the node's own.
+         if (edge == i .or. surfaces%next(edge) == i) cycle
          associate (t => surfaces%tangent(:, j), s => surfaces%tangent(:, edge))
             if ((s(1)*t(2) - s(2)*t(1))*merge(1, -1, side == 1) <= 0.0_wp) cycle
             if (across(offset(surfaces, i, edge), s) > gap) return
@@ -102,7 +115,7 @@ contains
    end function across
 
    !> Node `i` against node `k`, whose wedges are of `kind` with limiting faces `face`.
-   pure subroutine corner_pair(surfaces, i, k, kind, face, arm, predicted, pair)
+   pure subroutine corner_pair(surfaces, i, k, kind, face, arm, predicted, pair, gap)
       type(surfaces_type), intent(in) :: surfaces
       integer, intent(in) :: i
       integer, intent(in) :: k
@@ -111,11 +124,13 @@ contains
       real(wp), intent(in) :: arm(2)         !! offset from k to i [m]
       real(wp), intent(in) :: predicted(2)   !! the same after the step, unhindered [m]
       type(pair_type), intent(inout) :: pair !! `n_faces` 0 when they cannot touch now
+      real(wp), intent(out) :: gap(2)        !! [m]
 
-      real(wp) :: normal(2, 2), gap(2), chosen(2)
+      real(wp) :: normal(2, 2), chosen(2)
       integer :: use_face
 
       pair%n_faces = 0
+      gap = 0.0_wp
       if (kind == no_corner) return
       normal(:, 1) = face_normal(surfaces, i, k, face(1))
       normal(:, 2) = face_normal(surfaces, i, k, face(2))
@@ -125,11 +140,11 @@ contains
          if (is_in_reach(surfaces, gap(1)) .and. is_in_reach(surfaces, gap(2))) then
             call stand_at_two_faces(surfaces, i, k, face, arm, pair)
             pair%normal = normal
-            pair%gap = gap
          else if (is_in_reach(surfaces, gap(1))) then
-            call stand_at_face(surfaces, i, k, face(1), arm, normal(:, 1), gap(1), pair)
+            call stand_at_face(surfaces, i, k, face(1), arm, normal(:, 1), pair)
          else if (is_in_reach(surfaces, gap(2))) then
-            call stand_at_face(surfaces, i, k, face(2), arm, normal(:, 2), gap(2), pair)
+            call stand_at_face(surfaces, i, k, face(2), arm, normal(:, 2), pair)
+            gap(1) = gap(2)
          end if
          return
       case (flat_face)
@@ -146,7 +161,7 @@ contains
       end select
       gap(1) = dot_product(arm, chosen)
       if (is_in_reach(surfaces, gap(1))) then
-         call stand_at_face(surfaces, i, k, use_face, arm, chosen, gap(1), pair)
+         call stand_at_face(surfaces, i, k, use_face, arm, chosen, pair)
       end if
    end subroutine corner_pair
 
@@ -239,14 +254,13 @@ contains
 
    !> A pair along one normal, its reaction shared over the edge so that it has no moment;
    !> face 0 is a normal that belongs to no edge.
-   pure subroutine stand_at_face(surfaces, i, k, face, arm, normal, gap, pair)
+   pure subroutine stand_at_face(surfaces, i, k, face, arm, normal, pair)
       type(surfaces_type), intent(in) :: surfaces
       integer, intent(in) :: i
       integer, intent(in) :: k
       integer, intent(in) :: face
       real(wp), intent(in) :: arm(2)         !! from k to i [m]
       real(wp), intent(in) :: normal(2)
-      real(wp), intent(in) :: gap
       type(pair_type), intent(inout) :: pair
 
       real(wp) :: share, away
@@ -254,10 +268,9 @@ contains
 
       pair%n_faces = 1
       pair%normal(:, 1) = normal
-      pair%gap(1) = gap
-      pair%n_nodes = merge(2, 3, face == 0)
-      pair%node(:2) = [i, k]
-      pair%weight(:2) = [1.0_wp, -1.0_wp]
+      pair%n_nodes = 3
+      pair%node = [i, k, k, k]
+      pair%weight(:3) = [1.0_wp, -1.0_wp, 0.0_wp]
       if (face == 0) return
       edge = edge_of(surfaces, i, k, face)
       associate (t => surfaces%tangent(:, edge))
@@ -295,18 +308,19 @@ contains
       integer :: corner
 
       pair%n_faces = 2
-      pair%n_nodes = 2
-      pair%node(:2) = [i, k]
-      pair%weight(:2) = [1.0_wp, -1.0_wp]
-      if (all(face == [before_second, after_second])) then
+      pair%n_nodes = 3
+      pair%node = [i, k, k, k]
+      pair%weight(:3) = [1.0_wp, -1.0_wp, 0.0_wp]
+      if (face(1) == before_second .and. face(2) == after_second) then
          corner = k
-      else if (all(face == [before_first, after_first])) then
+      else if (face(1) == before_first .and. face(2) == after_first) then
          corner = i
       else
          return
       end if
-      before = offset(surfaces, surfaces%prev(corner), corner)
-      after = offset(surfaces, surfaces%next(corner), corner)
+      ! the edges into and out of the corner
+      before = -surfaces%length(surfaces%prev(corner))*surfaces%tangent(:, surfaces%prev(corner))
+      after = surfaces%length(corner)*surfaces%tangent(:, corner)
       determinant = before(1)*after(2) - before(2)*after(1)
       share = [arm(1)*after(2) - arm(2)*after(1), before(1)*arm(2) - before(2)*arm(1)]
       if (.not. sum(abs(share)) <= largest_share*abs(determinant)) return
@@ -316,23 +330,5 @@ contains
       pair%weight(merge(1, 2, corner == i)) = pair%weight(merge(1, 2, corner == i)) + sum(share)
       pair%weight(3:4) = -share
    end subroutine stand_at_two_faces
-
-   !> Speed that a closed gap may still have [m/s].
-   !>
-   !> A tiny penetration asks for no recovery, so standing still is always a solution; a deeper
-   !> one is taken back gently, without a kick, as fast at any step.
-   pure function feasible_bias(gap, h, dt, critical) result(bias)
-      real(wp), intent(in) :: gap   !! [m]
-      real(wp), intent(in) :: h     !! shortest edge [m]
-      real(wp), intent(in) :: dt    !! [s]
-      real(wp), intent(in) :: critical  !! largest stable step, the time scale of recovery [s]
-      real(wp) :: bias
-
-      if (gap >= 0.0_wp) then
-         bias = gap/dt
-      else
-         bias = max(min(0.0_wp, recovery*(gap + slop*h)), -push*h)/critical
-      end if
-   end function feasible_bias
 
 end module lithofrac_contact_pairs

@@ -44,12 +44,11 @@ contains
       stale = .not. candidates%listed
       if (stale) return
       limit = (allowed_motion*skin*surfaces%h)**2
-      moved = 0.0_wp
       do i = 1, surfaces%n
-         moved = max(moved, (surfaces%u(1, i) - candidates%u(1, i))**2 &
-            + (surfaces%u(2, i) - candidates%u(2, i))**2)
+         moved = (surfaces%u(1, i) - candidates%u(1, i))**2 &
+            + (surfaces%u(2, i) - candidates%u(2, i))**2
+         if (.not. moved <= limit) stale = .true.
       end do
-      stale = .not. moved <= limit
    end function list_is_stale
 
    !> List the pairs within the skin of the positions of now.

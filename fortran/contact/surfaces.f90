@@ -10,7 +10,7 @@ module lithofrac_contact_surfaces
    implicit none
    private
 
-   public :: new_surfaces, offset, surfaces_type, tag_edges, update_shape
+   public :: new_surfaces, offset, surfaces_type, tag_edges, update_edges, update_shape
 
    type :: surfaces_type
       integer :: n = 0                          !! boundary nodes, and as many edges
@@ -146,14 +146,31 @@ contains
       type(surfaces_type), intent(inout) :: surfaces
 
       integer :: i
-      real(wp) :: along(2)
 
-      do i = 1, surfaces%n
-         along = offset(surfaces, surfaces%next(i), i)
-         surfaces%length(i) = sqrt(along(1)*along(1) + along(2)*along(2))
-         surfaces%tangent(:, i) = along/surfaces%length(i)
-      end do
+      call update_edges(surfaces, [(i, i=1, surfaces%n)])
    end subroutine update_shape
+
+   !> The same for some edges only.
+   pure subroutine update_edges(surfaces, edge)
+      type(surfaces_type), intent(inout) :: surfaces
+      integer, intent(in), contiguous :: edge(:)
+
+      integer :: i, j, k
+      real(wp) :: x, y, length
+
+      associate (reference => surfaces%reference, u => surfaces%u)
+         do k = 1, size(edge)
+            i = edge(k)
+            j = surfaces%next(i)
+            x = (reference(1, j) - reference(1, i)) + (u(1, j) - u(1, i))
+            y = (reference(2, j) - reference(2, i)) + (u(2, j) - u(2, i))
+            length = sqrt(x*x + y*y)
+            surfaces%length(i) = length
+            surfaces%tangent(1, i) = x/length
+            surfaces%tangent(2, i) = y/length
+         end do
+      end associate
+   end subroutine update_edges
 
    !> From boundary node `from` to boundary node `to` [m].
    !>

@@ -9,7 +9,7 @@ module lithofrac_fracture_arms
    use lithofrac_mesh_mesh, only: mesh_type
    use lithofrac_mesh_rings, only: fan_type, on_boundary
    use lithofrac_mesh_split, only: arm_type
-   use lithofrac_mesh_topology, only: next_corner, topology_type
+   use lithofrac_mesh_topology, only: corner_of, next_corner, topology_type
    implicit none
    private
 
@@ -78,7 +78,26 @@ contains
          best = [best_single(ways(:n), angles(fan%n + 1), sector, rays), 0]
       end if
       arms = ways(pack(best, best > 0))%arm
+      if (size(arms) == 2) then
+         if (arms(1)%element == arms(2)%element) then
+            arms = seen_from_outside(mesh, topology, arms)
+         end if
+      end if
    end subroutine choose_arms
+
+   !> An edge of an element that the other arm cuts is named from its other side, which stays.
+   pure elemental function seen_from_outside(mesh, topology, arm) result(seen)
+      type(mesh_type), intent(in) :: mesh
+      type(topology_type), intent(in) :: topology
+      type(arm_type), intent(in) :: arm
+      type(arm_type) :: seen
+
+      seen = arm
+      if (arm%through) return
+      seen%element = topology%neighbour(arm%edge, arm%element)
+      seen%edge = corner_of(mesh, seen%element, &
+         mesh%triangles(next_corner(arm%edge), arm%element))
+   end function seen_from_outside
 
    !> Angles of the spokes, counter-clockwise from the first, and of the rays along +-`along`.
    pure subroutine measure_fan(mesh, fan, along, angles, sector, rays)

@@ -6,6 +6,7 @@ module lithofrac_fracture_fracture
    use lithofrac_fracture_bonds, only: bonds_type
    use lithofrac_fracture_element_failure, only: normal_reset, paper_reset
    use lithofrac_fracture_failure_map, only: by_failure_factor, by_volume
+   use lithofrac_fracture_fragment_drag, only: fragment_drag_type
    use lithofrac_fracture_plan, only: rules_type
    use lithofrac_mesh_mesh, only: mesh_type
    use lithofrac_mesh_topology, only: new_topology, topology_type
@@ -25,6 +26,7 @@ module lithofrac_fracture_fracture
       integer :: interval = 1                       !! steps between two failure maps
       type(topology_type) :: topology
       type(bonds_type) :: bonds
+      type(fragment_drag_type) :: drag
       integer, allocatable :: heir(:)               !! (n_elements) itself, or a piece of it
       integer, allocatable :: resets(:)             !! (n_elements) times that it was reset
       real(wp), allocatable :: retry(:)             !! (n_nodes) F_p below which it is left alone
@@ -76,6 +78,8 @@ contains
       allocate (fracture%resets(mesh%n_elements), source=0)
       allocate (fracture%retry(mesh%n_nodes), source=0.0_wp)
       allocate (fracture%bonds%list(0), fracture%record(n_record, 0))
+      allocate (fracture%drag%node(0), fracture%drag%first(1), fracture%drag%force(2, 0))
+      fracture%drag%first = 1
       fracture%on = .true.
    end subroutine new_fracture
 

@@ -11,6 +11,7 @@ module lithofrac_mechanics_fields
    private
 
    public :: fields_type, inelastic_type, move_inelastic, new_fields, new_inelastic
+   public :: free_all, prescribe
 
    !> Nodal fields.
    type :: fields_type
@@ -22,6 +23,8 @@ module lithofrac_mechanics_fields
       real(wp), allocatable :: mass(:)             !! (n_nodes) [kg]
       real(wp), allocatable :: inverse_mass(:, :)  !! (2, n_nodes) 0 where prescribed [1/kg]
       real(wp), allocatable :: free_mass(:, :)     !! (2, n_nodes) 0 where prescribed [kg]
+      real(wp), allocatable :: drag_mass(:, :)     !! (2, n_nodes) 0 also on loose fragments [kg]
+      real(wp), allocatable :: fit_mass(:)         !! (n_nodes) 0 on loose fragments [kg]
    end type fields_type
 
    !> State of the material in the elements; lane and chunk as in `chunks_type`.
@@ -51,8 +54,28 @@ contains
       allocate (fields%internal(2, n_nodes), fields%external(2, n_nodes), source=0.0_wp)
       allocate (fields%contact(2, n_nodes), source=0.0_wp)
       allocate (fields%mass(n_nodes), source=0.0_wp)
-      allocate (fields%inverse_mass(2, n_nodes), fields%free_mass(2, n_nodes), source=0.0_wp)
    end subroutine new_fields
+
+   !> Masses that follow from the lumped ones while no component is prescribed.
+   subroutine free_all(fields)
+      type(fields_type), intent(inout) :: fields
+
+      fields%free_mass = spread(fields%mass, 1, 2)
+      fields%inverse_mass = 1.0_wp/fields%free_mass
+      fields%drag_mass = fields%free_mass
+      fields%fit_mass = fields%mass
+   end subroutine free_all
+
+   !> Prescribe a velocity component of some nodes.
+   subroutine prescribe(fields, component, node)
+      type(fields_type), intent(inout) :: fields
+      integer, intent(in) :: component        !! 1 or 2
+      integer, intent(in) :: node(:)
+
+      fields%free_mass(component, node) = 0.0_wp
+      fields%inverse_mass(component, node) = 0.0_wp
+      fields%drag_mass(component, node) = 0.0_wp
+   end subroutine prescribe
 
    !> Virgin material everywhere.
    subroutine new_inelastic(state, chunks, rocks, band_width)

@@ -232,6 +232,8 @@ contains
       n = size(fracture%retry)
       call visitor%visit(n, fracture%retry)
       call visitor%visit_scalar(fracture%bonds%power_before)
+      call visitor%visit(size(fracture%drag%force), fracture%drag%force)
+      call visitor%visit_scalar(fracture%drag%power_before)
       n = size(fracture%bonds%list)
       call visitor%visit_count(n)
       if (visitor%mode == restoring) then
@@ -261,7 +263,7 @@ contains
       call visitor%visit_counts(list, n)
    end subroutine visit_list
 
-   !> The same for a list of (element, side).
+   !> The same for a list of pairs of integers.
    subroutine visit_edges(visitor, edge)
       type(visitor_type), intent(inout) :: visitor
       integer, allocatable, intent(inout) :: edge(:, :)
@@ -297,12 +299,28 @@ contains
          call visitor%visit_scalar(contact%statistics%penetration)
          listed = merge(1.0_wp, 0.0_wp, contact%candidates%listed)
          call visitor%visit_scalar(listed)
-         if (listed < 0.5_wp) return
+         if (listed < 0.5_wp) then
+            call visit_pairs(visitor, contact%candidates%corner, contact%corner_impulse)
+            call visit_pairs(visitor, contact%candidates%edge, contact%edge_impulse)
+            return
+         end if
          if (visitor%mode == restoring) call renew(contact)
          call visitor%visit(size(contact%corner_impulse), contact%corner_impulse)
          call visitor%visit(size(contact%edge_impulse), contact%edge_impulse)
       end associate
    end subroutine visit_contact
+
+   !> Pairs of before cracks came: the next list takes their impulses as a first guess.
+   subroutine visit_pairs(visitor, pair, impulse)
+      type(visitor_type), intent(inout) :: visitor
+      integer, allocatable, intent(inout) :: pair(:, :)
+      real(wp), allocatable, intent(inout) :: impulse(:, :)
+
+      if (.not. allocated(pair)) allocate (pair(2, 0), impulse(2, 0))
+      call visit_edges(visitor, pair)
+      if (visitor%mode == restoring) impulse = spread([0.0_wp, 0.0_wp], 2, size(pair, 2))
+      call visitor%visit(size(impulse), impulse)
+   end subroutine visit_pairs
 
    !> The list of a saved run follows from the positions that it was made for.
    subroutine renew(contact)

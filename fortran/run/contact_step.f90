@@ -5,7 +5,8 @@
 module lithofrac_run_contact_step
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: bad_contact, set_failure, status_type
-   use lithofrac_contact_solve, only: prescribed_collision, solve_contact, solved, too_fast
+   use lithofrac_contact_solve, only: follow_motion, prescribed_collision, solve_contact, &
+      solved, too_fast
    use lithofrac_run_model, only: model_type
    use lithofrac_run_node_update, only: n_sums
    use lithofrac_run_settings, only: no_damping, relative_to_affine
@@ -20,12 +21,16 @@ contains
    subroutine bring_masses(model)
       type(model_type), intent(inout) :: model
 
+      integer :: i
+
       associate (contact => model%contact)
-         contact%inverse_mass = model%fields%inverse_mass(:, contact%surfaces%node)
+         do i = 1, contact%surfaces%n
+            contact%motion(i)%inverse_mass = model%fields%inverse_mass(:, contact%surfaces%node(i))
+         end do
       end associate
    end subroutine bring_masses
 
-   !> Keep the velocities of the half step that ends.
+   !> Keep the velocities of the half step that ends, and make room for the impulses of the next.
    pure subroutine note_velocities(model)
       type(model_type), intent(inout) :: model
 
@@ -33,7 +38,12 @@ contains
 
       associate (contact => model%contact)
          do i = 1, contact%surfaces%n
-            contact%before(:, i) = model%fields%v(:, contact%surfaces%node(i))
+            associate (at => contact%record(i), node => contact%surfaces%node(i))
+               at%before(1) = model%fields%v(1, node)
+               at%before(2) = model%fields%v(2, node)
+               at%impulse(1) = 0.0_wp
+               at%impulse(2) = 0.0_wp
+            end associate
          end do
       end associate
    end subroutine note_velocities
@@ -43,34 +53,81 @@ contains
       type(model_type), intent(inout) :: model
       type(status_type), intent(out) :: status
 
-      integer :: i, code, pair(2)
-      real(wp) :: sums(n_sums)
+      integer :: code, pair(2)
+      logical :: renewed
 
-      associate (contact => model%contact, fields => model%fields)
-         do i = 1, contact%surfaces%n
-            associate (node => contact%surfaces%node(i))
-               contact%surfaces%u(:, i) = fields%u(:, node)
-               contact%v(:, i) = fields%v(:, node)
-            end associate
-         end do
-         call solve_contact(contact, model%dt, model%critical, code, pair)
+      associate (contact => model%contact)
+         call bring_positions(model)
+         pair = 1
+         call follow_motion(contact, renewed, code)
+         if (code == solved) then
+            if (renewed) model%fields%contact(:, contact%surfaces%node) = 0.0_wp
+            call bring_velocities(model)
+            call solve_contact(contact, model%dt, model%critical, code, pair)
+         end if
          if (code /= solved) then
             call explain(model, code, contact%surfaces%node(pair), status)
             return
          end if
-         sums = 0.0_wp
-         do i = 1, contact%surfaces%n
-            associate (node => contact%surfaces%node(i))
-               fields%contact(:, node) = contact%impulse(:, i)/model%dt
-               if (.not. maxval(abs(contact%impulse(:, i))) > 0.0_wp) cycle
-               call correct_sums(model, node, contact%before(:, i), &
-                  contact%v(:, i) - fields%v(:, node), sums)
-               fields%v(:, node) = contact%v(:, i)
-            end associate
-         end do
-         model%sums(:, model%blocks%n_runs + 1) = sums
+         call take_impulses(model)
       end associate
    end subroutine close_contacts
+
+   pure subroutine bring_positions(model)
+      type(model_type), intent(inout) :: model
+
+      integer :: i
+
+      associate (surfaces => model%contact%surfaces, fields => model%fields)
+         do i = 1, surfaces%n
+            surfaces%u(1, i) = fields%u(1, surfaces%node(i))
+            surfaces%u(2, i) = fields%u(2, surfaces%node(i))
+         end do
+      end associate
+   end subroutine bring_positions
+
+   !> Predicted velocities of the boundary nodes that contact may change.
+   pure subroutine bring_velocities(model)
+      type(model_type), intent(inout) :: model
+
+      integer :: i, k
+
+      associate (contact => model%contact, fields => model%fields)
+         do k = 1, size(contact%near)
+            i = contact%near(k)
+            associate (at => contact%motion(i), node => contact%surfaces%node(i))
+               at%v(1) = fields%v(1, node)
+               at%v(2) = fields%v(2, node)
+            end associate
+         end do
+      end associate
+   end subroutine bring_velocities
+
+   !> Corrected velocities and forces of the nodes, and what the correction adds to the sums.
+   pure subroutine take_impulses(model)
+      type(model_type), intent(inout) :: model
+
+      integer :: k, node
+      real(wp) :: per_step, sums(n_sums)
+
+      sums = 0.0_wp
+      per_step = 1.0_wp/model%dt
+      associate (contact => model%contact, fields => model%fields)
+         do k = 1, size(contact%near)
+            node = contact%surfaces%node(contact%near(k))
+            associate (at => contact%record(contact%near(k)), v => contact%motion( &
+                  contact%near(k))%v)
+               fields%contact(1, node) = at%impulse(1)*per_step
+               fields%contact(2, node) = at%impulse(2)*per_step
+               if (.not. max(abs(at%impulse(1)), abs(at%impulse(2))) > 0.0_wp) cycle
+               call correct_sums(model, node, at%before, v - fields%v(:, node), sums)
+               fields%v(1, node) = v(1)
+               fields%v(2, node) = v(2)
+            end associate
+         end do
+      end associate
+      model%sums(:, model%blocks%n_runs + 1) = sums
+   end subroutine take_impulses
 
    !> What a change of velocity adds to kinetic energy and to the power of the damping.
    pure subroutine correct_sums(model, node, before, change, sums)
@@ -94,7 +151,7 @@ contains
          else
             slip = 0.5_wp*(before + fields%v(:, node))
          end if
-         drag = -model%alpha(body)*fields%free_mass(:, node)*slip
+         drag = -model%alpha(body)*fields%drag_mass(:, node)*slip
          sums(3) = sums(3) + drag(1)*change(1) + drag(2)*change(2)
       end associate
    end subroutine correct_sums

@@ -8,12 +8,14 @@ module lithofrac_run_grow
    use lithofrac_base_status, only: ok, status_type
    use lithofrac_contact_rebuild, only: rebuild_contact
    use lithofrac_contact_surfaces, only: tag_edges
+   use lithofrac_fracture_fragment_drag, only: drag_power, list_loose_nodes
+   use lithofrac_fracture_fragments, only: find_parts
    use lithofrac_mechanics_blocks, only: new_blocks
    use lithofrac_mechanics_chunks, only: chunks_type, new_chunks, set_corners
-   use lithofrac_mechanics_fields, only: inelastic_type, move_inelastic, new_inelastic
+   use lithofrac_mechanics_fields, only: inelastic_type, move_inelastic, new_inelastic, prescribe
    use lithofrac_mechanics_follow_loads, only: follow_pressure, follow_velocity
    use lithofrac_mechanics_internal_force, only: element_force
-   use lithofrac_mechanics_loads, only: add_forces
+   use lithofrac_mechanics_loads, only: add_forces, prescribed_kinetic, work_after, work_before
    use lithofrac_mesh_edge_set, only: edge_nodes, follow_edges
    use lithofrac_mesh_edits, only: edits_type, inherit
    use lithofrac_mesh_mesh, only: living_part
@@ -22,6 +24,7 @@ module lithofrac_run_grow
    use lithofrac_run_damping, only: n_moments
    use lithofrac_run_model, only: model_type, set_mass
    use lithofrac_run_node_update, only: n_sums
+   use lithofrac_run_settings, only: relative_to_affine
    implicit none
    private
 
@@ -36,9 +39,9 @@ contains
       type(status_type), intent(out) :: status
 
       integer :: i
-      real(wp) :: kinetic
+      real(wp) :: energy(4)
 
-      kinetic = half_step_energy(model)
+      energy = energies(model)
       call grow_elements(model, edits)
       call inherit(edits, model%fields%u)
       call inherit(edits, model%fields%v)
@@ -53,11 +56,23 @@ contains
       call rebuild(model, status)
       if (status%code /= ok) return
       call renew_forces(model, edits)
-      if (edits%n_elements == 0) return
-      kinetic = half_step_energy(model) - kinetic
-      model%ledger%relump = model%ledger%relump + kinetic
-      model%sums(1, size(model%sums, 2)) = model%sums(1, size(model%sums, 2)) + kinetic
+      if (edits%n_elements > 0) call book_relump(model, energies(model) - energy)
    end subroutine grow
+
+   !> Mass and forces have gone to new nodes on edges that were cut.
+   !>
+   !> A new node between a driven and a free one is free, so reactions change; but both half
+   !> steps around now have had the old ones.
+   subroutine book_relump(model, change)
+      type(model_type), intent(inout) :: model
+      real(wp), intent(in) :: change(4)         !! of `energies`
+
+      associate (ledger => model%ledger, kinetic => model%sums(1, size(model%sums, 2)))
+         ledger%relump = ledger%relump + change(1)
+         ledger%external = ledger%external - change(3) - change(4)
+         kinetic = kinetic + change(1) - change(2) - change(4)
+      end associate
+   end subroutine book_relump
 
    !> All that follows from mesh, topology, heirs and loads; nodal fields get their new length.
    subroutine rebuild(model, status)
@@ -77,10 +92,10 @@ contains
       call set_mass(model)
       do i = 1, size(model%velocities)
          associate (load => model%velocities(i))
-            model%fields%free_mass(load%component, load%node) = 0.0_wp
-            model%fields%inverse_mass(load%component, load%node) = 0.0_wp
+            call prescribe(model%fields, load%component, load%node)
          end associate
       end do
+      if (model%settings%damping == relative_to_affine) call loosen_fragments(model)
       call new_blocks(model%blocks, model%chunks, model%mesh)
       call resize_sums(model)
       call rebuild_contact(model%contact, living_part(model%mesh, &
@@ -93,6 +108,23 @@ contains
       end do
       call bring_masses(model)
    end subroutine rebuild
+
+   !> Loose fragments take no part in the damping of their body; they have their own.
+   subroutine loosen_fragments(model)
+      type(model_type), intent(inout) :: model
+
+      real(wp) :: lost   !! power that is still to be booked of who is not loose any more [W]
+
+      associate (drag => model%fracture%drag, fields => model%fields)
+         lost = drag_power(drag, fields%v)
+         call list_loose_nodes(drag, model%mesh, &
+            find_parts(model%mesh, model%fracture%topology))
+         lost = lost - drag_power(drag, fields%v)
+         model%ledger%damping = model%ledger%damping + 0.5_wp*model%dt*lost
+         fields%drag_mass(:, drag%node) = 0.0_wp
+         fields%fit_mass(drag%node) = 0.0_wp
+      end associate
+   end subroutine loosen_fragments
 
    !> Corners of elements that were given copies, and the layout anew where elements were cut.
    subroutine grow_elements(model, edits)
@@ -201,6 +233,9 @@ contains
                fields%external(:, bond%node) = fields%external(:, bond%node) + bond%force
             end associate
          end do
+         associate (drag => model%fracture%drag)
+            fields%external(:, drag%node) = fields%external(:, drag%node) + drag%force
+         end associate
       end associate
    end subroutine renew_forces
 
@@ -240,6 +275,20 @@ contains
       sums(:, size(sums, 2)) = model%sums(:, n)
       call move_alloc(sums, model%sums)
    end subroutine resize_sums
+
+   !> Kinetic energy at the half step, what the sums lack of the present one, and work of the
+   !> loads in the half steps before and after now [J].
+   pure function energies(model)
+      type(model_type), intent(in) :: model
+      real(wp) :: energies(4)
+
+      associate (velocities => model%velocities, pressures => model%pressures, &
+            fields => model%fields)
+         energies = [half_step_energy(model), prescribed_kinetic(velocities, fields), &
+            work_before(velocities, pressures, model%dt, fields), &
+            work_after(velocities, pressures, model%dt, fields)]
+      end associate
+   end function energies
 
    !> Kinetic energy at the half step [J].
    pure function half_step_energy(model) result(energy)

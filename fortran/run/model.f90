@@ -10,7 +10,8 @@ module lithofrac_run_model
    use lithofrac_material_rock, only: rock_type
    use lithofrac_mechanics_blocks, only: blocks_type, new_blocks
    use lithofrac_mechanics_chunks, only: chunks_type, new_chunks
-   use lithofrac_mechanics_fields, only: fields_type, inelastic_type, new_fields, new_inelastic
+   use lithofrac_mechanics_fields, only: fields_type, free_all, inelastic_type, new_fields, &
+      new_inelastic, prescribe
    use lithofrac_mechanics_loads, only: measure_edges, pressure_type, ramp_type, velocity_type
    use lithofrac_mechanics_lumped_mass, only: corner_masses
    use lithofrac_mesh_edge_set, only: find_edges
@@ -132,8 +133,7 @@ contains
                element, model%rocks(model%mesh%body(element))%density, model%chunks%axisymmetric)
          end associate
       end do
-      model%fields%free_mass = spread(model%fields%mass, 1, 2)
-      model%fields%inverse_mass = 1.0_wp/model%fields%free_mass
+      call free_all(model%fields)
    end subroutine set_mass
 
    subroutine set_time_step(model)
@@ -196,8 +196,7 @@ contains
          load%speed = speed
          load%ramp = ramp
          allocate (load%before(size(node)), source=0.0_wp)
-         model%fields%free_mass(component, node) = 0.0_wp
-         model%fields%inverse_mass(component, node) = 0.0_wp
+         call prescribe(model%fields, component, node)
          model%velocities = [model%velocities, load]
       end if
    end subroutine add_velocity

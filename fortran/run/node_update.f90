@@ -101,7 +101,7 @@ contains
       power_before = 0.0_wp
       power_after = 0.0_wp
       associate (u => fields%u, v => fields%v, f => fields%internal, p => fields%external, &
-            inverse_mass => fields%inverse_mass, free_mass => fields%free_mass)
+            inverse_mass => fields%inverse_mass, drag_mass => fields%drag_mass)
          !$omp simd private(arm, before, after, drag) &
          !$omp& reduction(+:kinetic, power_before, power_after)
          do node = first, last
@@ -109,9 +109,9 @@ contains
             arm(2) = nodes(2, node) + u(2, node) - fit%centre(2)
             before(1) = v(1, node)
             before(2) = v(2, node)
-            drag(1) = -alpha*free_mass(1, node)*(before(1) - fit%velocity(1) &
+            drag(1) = -alpha*drag_mass(1, node)*(before(1) - fit%velocity(1) &
                - fit%gradient(1, 1)*arm(1) - fit%gradient(1, 2)*arm(2))
-            drag(2) = -alpha*free_mass(2, node)*(before(2) - fit%velocity(2) &
+            drag(2) = -alpha*drag_mass(2, node)*(before(2) - fit%velocity(2) &
                - fit%gradient(2, 1)*arm(1) - fit%gradient(2, 2)*arm(2))
             after(1) = before(1) + inverse_mass(1, node)*(dt*(p(1, node) - f(1, node) + drag(1)))
             after(2) = before(2) + inverse_mass(2, node)*(dt*(p(2, node) - f(2, node) + drag(2)))
@@ -145,7 +145,7 @@ contains
       !$omp simd private(m, x, y, vx, vy) &
       !$omp& reduction(+:s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12)
       do node = first, last
-         m = fields%mass(node)
+         m = fields%fit_mass(node)
          vx = fields%v(1, node)
          vy = fields%v(2, node)
          x = nodes(1, node) + (fields%u(1, node) + dt*vx)

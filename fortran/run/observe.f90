@@ -39,6 +39,7 @@ contains
          ledger%friction = ledger%friction + model%contact%work_before(2)
          ledger%insertion = ledger%insertion &
             + 0.5_wp*model%dt*model%fracture%bonds%power_before
+         ledger%damping = ledger%damping + 0.5_wp*model%dt*model%fracture%drag%power_before
       end if
       model%ledger%scale = max(model%ledger%scale, ledger%elastic + ledger%compressive &
          + ledger%fracture)

@@ -8,6 +8,7 @@ module lithofrac_run_step
       set_failure, status_type
    use lithofrac_contact_overlap, only: refuse_overlap
    use lithofrac_fracture_bonds, only: apply_bonds, bond_power, forget_bonds
+   use lithofrac_fracture_fragment_drag, only: apply_drag, drag_power
    use lithofrac_mechanics_blocks, only: assemble
    use lithofrac_mechanics_internal_force, only: chunk_force, failure_type
    use lithofrac_mechanics_loads, only: apply_pressure, apply_velocity, work_after, work_before
@@ -169,8 +170,7 @@ contains
             + work_after(model%velocities, model%pressures, dt, model%fields)
          if (model%step > 0) ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(2, :))
          ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(3, :))
-         if (model%fracture%on) ledger%insertion = ledger%insertion + 0.5_wp*dt &
-            *(model%fracture%bonds%power_before + bond_power(model%fracture%bonds, model%fields%v))
+         if (model%fracture%on) call book_fracture(model)
       end associate
       if (model%contact%on) then
          call book_contact(model)
@@ -191,13 +191,7 @@ contains
             model%fields%external(:, model%pressures(load)%edge(:, i)) = 0.0_wp
          end do
       end do
-      if (model%fracture%on) then
-         do i = 1, size(model%fracture%bonds%list)
-            model%fields%external(:, model%fracture%bonds%list(i)%node) = 0.0_wp
-         end do
-         call forget_bonds(model%fracture%bonds, model%step)
-         call apply_bonds(model%fracture%bonds, model%step, model%fields%v, model%fields%external)
-      end if
+      if (model%fracture%on) call pull_on_cracks(model)
       do load = 1, size(model%pressures)
          call apply_pressure(model%pressures(load), model%mesh%nodes, &
             model%chunks%axisymmetric, model%step*model%dt, model%fields)
@@ -206,6 +200,39 @@ contains
          call apply_velocity(model%velocities(load), (model%step + 0.5_wp)*model%dt, model%fields)
       end do
    end subroutine load_boundary
+
+   !> Work of fading bonds and of the drag on fragments, half of it on either side of its time.
+   subroutine book_fracture(model)
+      type(model_type), intent(inout) :: model
+
+      associate (bonds => model%fracture%bonds, drag => model%fracture%drag, v => model%fields%v)
+         model%ledger%insertion = model%ledger%insertion &
+            + 0.5_wp*model%dt*(bonds%power_before + bond_power(bonds, v))
+         model%ledger%damping = model%ledger%damping &
+            + 0.5_wp*model%dt*(drag%power_before + drag_power(drag, v))
+      end associate
+   end subroutine book_fracture
+
+   !> Forces of this step that bonds and the drag on fragments put on the nodes.
+   subroutine pull_on_cracks(model)
+      type(model_type), intent(inout) :: model
+
+      integer :: i
+
+      associate (bonds => model%fracture%bonds, drag => model%fracture%drag, &
+            fields => model%fields)
+         do i = 1, size(bonds%list)
+            fields%external(:, bonds%list(i)%node) = 0.0_wp
+         end do
+         do i = 1, size(drag%node)
+            fields%external(:, drag%node(i)) = 0.0_wp
+         end do
+         call forget_bonds(bonds, model%step)
+         call apply_bonds(bonds, model%step, fields%v, fields%external)
+         call apply_drag(drag, model%alpha, model%mesh%body_of_node, model%mesh%nodes, fields%u, &
+            fields%v, fields%mass, fields%external)
+      end associate
+   end subroutine pull_on_cracks
 
    subroutine set_damping(model)
       type(model_type), intent(inout) :: model
@@ -246,7 +273,7 @@ contains
       else if (model%reference_step >= 0) then
          do body = 1, model%mesh%n_bodies
             model%alpha(body) = alpha_of(model, rayleigh_frequency(body, &
-               model%mesh%body_of_node(:model%mesh%n_nodes), model%fields%free_mass, &
+               model%mesh%body_of_node(:model%mesh%n_nodes), model%fields%drag_mass, &
                u - model%reference_u, model%fields%internal - model%reference_f, &
                model%lowest_frequency(body)))
          end do

@@ -7,6 +7,7 @@ module run_face
    use lithofrac_fracture_fragments, only: find_parts
    use lithofrac_material_rock, only: new_rock, rock_type
    use lithofrac_mechanics_loads, only: ramp_type
+   use lithofrac_run_check, only: check_model
    use lithofrac_run_checkpoint, only: checkpoint_size, restore, save_state
    use lithofrac_run_energy, only: ledger_type, pack_ledger
    use lithofrac_run_model, only: add_contact, add_fracture, add_pressure, add_velocity, model_type, &
@@ -20,7 +21,7 @@ module run_face
    public :: run_new, run_drop, run_add_velocity, run_add_pressure, run_set_motion
    public :: run_advance, run_clock, run_energy, run_loads, run_elements, run_nodes
    public :: run_add_contact, run_tag_surface, run_contact_forces, run_contact_statistics
-   public :: run_add_fracture, run_sizes, run_mesh, run_parts, run_failure, run_cracks
+   public :: run_add_fracture, run_sizes, run_mesh, run_parts, run_failure, run_cracks, run_check
    public :: run_checkpoint_size, run_save, run_restore
 
    integer, parameter :: max_runs = 64
@@ -388,6 +389,20 @@ contains
       call check_handle(run, code, message)
       if (code == ok .and. n_edges > 0) record = slots(run)%model%fracture%record(:, :n_edges)
    end subroutine run_cracks
+
+   !> Fail in words where an invariant of a mesh that cracks is broken.
+   subroutine run_check(run, code, message)
+      integer(c_int), intent(in) :: run
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      type(status_type) :: status
+
+      call check_handle(run, code, message)
+      if (code /= ok) return
+      call check_model(slots(run)%model, status)
+      call export_status(status, code, message)
+   end subroutine run_check
 
    !> Contact force on every node at the time of the fields.
    subroutine run_contact_forces(run, n_nodes, force, code, message)

@@ -27,6 +27,7 @@ _mesh = checked(_face.run_mesh)
 _parts = checked(_face.run_parts)
 _failure = checked(_face.run_failure)
 _cracks = checked(_face.run_cracks)
+_check = checked(_face.run_check)
 _set_motion = checked(_face.run_set_motion)
 _advance = checked(_face.run_advance)
 _clock = checked(_face.run_clock)
@@ -254,6 +255,10 @@ class Run:
     def cracks(self) -> np.ndarray:
         """The record of opened edges, (k, 16); columns as in fortran/fracture/fracture.f90."""
         return _cracks(self._handle, self.sizes().opened_edges).T
+
+    def check(self) -> None:
+        """Raise `CoreError` in words where an invariant of the mesh is broken."""
+        _check(self._handle)
 
     def contact_statistics(self) -> ContactStatistics:
         """Pairs, sweeps and penetration since the start."""

@@ -149,13 +149,13 @@ def opened(mesh: Mesh, x_mm: float, from_mm: float, opening_mm: float):
 
 @pytest.fixture
 def make_cracked_run(make_run):
-    """make_cracked_run(name, opening_mm=0.2, cracks=3, **of make_run) -> folder of a discrete run.
+    """make_cracked_run(name, opening_mm, cracks, mode, **of make_run) -> folder of a discrete run.
 
     A vertical crack at x = 2 mm grows down from the top of the rock by 1 mm at a time; the first
     two pieces are tensile, the others compressive dilation.
     """
 
-    def made(name, opening_mm=0.2, cracks=3, **keys):
+    def made(name, opening_mm=0.2, cracks=3, mode="inter_element", **keys):
         folder = make_run(name, **keys)
         mesh = block_mesh()
         mesh.save(folder / "mesh.npz")
@@ -189,8 +189,11 @@ def make_cracked_run(make_run):
         grown = np.clip(energy["time_s"] / end - 0.4, 0.0, None)
         energy.assign(
             contact_J=-1e-6 * grown, friction_J=-2e3 * grown, insertion_J=-1e2 * grown,
-            relump_J=1e-2 * grown, reset_J=10.0 * grown,
+            relump_J=-1e-2 * grown, reset_J=10.0 * grown,
         ).to_parquet(folder / "energy.parquet")  # fmt: skip
+        case = yaml.safe_load((folder / "case.yaml").read_text())
+        case["fracture"] = {"mode": mode}
+        (folder / "case.yaml").write_text(yaml.safe_dump(case))
         path = folder / "summary.json"
         more = {
             "cracks": cracks, "fragments": 1, "crack_length_mm": float(cracks),

@@ -75,7 +75,7 @@ def test_triaxial_peak_on_the_mesh_of_the_suite(confinement, tmp_path):
 
 @pytest.mark.parametrize("confinement", [0, 20])
 def test_stiff_plane_strain_peak_is_that_of_the_material_point(confinement, tmp_path):
-    name = "sandstone_plane_strain_p00"
+    name = "sandstone_plane_strain_k02_p00"
     case = sandstone(name, confinement)
     assert case.loading.lateral_stiffness_over_young == 0.02
     bench = bench_peak(case, "stiff_confinement", confinement)

@@ -12,7 +12,7 @@ import pandas as pd
 from lithofrac.analysis.frames import Frame
 
 SPREAD = 0.5  # share of the area above which plastic strain counts as spread uniformly
-ELONGATION = 3.0  # least ratio of the axes; bands crossing at more than 18 degrees stay below
+ELONGATION = 3.0  # least ratio of the axes; two bands at +-19 degrees or more have less
 NEAR_AXIS_DEG = 20.0  # a segment within this angle of the load axis is near-vertical
 
 
@@ -32,9 +32,13 @@ class Band:
     spread: float
 
     @property
-    def localised(self) -> bool:
-        """Whether the cloud is one band: neither spread out nor nearly round."""
-        return self.spread <= SPREAD and self.elongation >= ELONGATION
+    def note(self) -> str:
+        """Why the cloud is no band; empty where it is one, and the angle that of a band."""
+        if np.isnan(self.angle_deg):
+            return "no plastic strain" if np.isnan(self.spread) else "uniform"
+        if self.spread > SPREAD:
+            return "spread out"
+        return "" if self.elongation >= ELONGATION else "no single axis"
 
 
 def find_band(frame: Frame) -> Band:

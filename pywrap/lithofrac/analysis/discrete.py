@@ -38,7 +38,6 @@ BAND_COLUMNS = [
     "cracks_near_axis_percent",
     "median_crack_angle_deg",
 ]
-NO_BAND = "no band"
 OWN_KEYS = ("title", "fracture", "output", "probes")  # of a case; they leave the continuum as it is
 
 
@@ -46,7 +45,7 @@ def cracks(inputs: list[Path], data: Path) -> pd.DataFrame:
     """Cracks, contact and cost of the discrete runs, beside the continuum run of the same case.
 
     Shares are of the crack length. The time step is the smallest of the run over that of the
-    continuum, or over the run's own first one where the suite has no such continuum.
+    continuum (`continuum_step`).
     """
     runs = find_runs(inputs)
     rows = []
@@ -55,7 +54,6 @@ def cracks(inputs: list[Path], data: Path) -> pd.DataFrame:
             continue
         summary, table = run.summary, run.cracks
         twin = continuum_of(run, runs)
-        step = twin.summary["time_step_min_s"] if twin else summary["time_step_max_s"]
         length = table["length_mm"].sum()
         tensile = table.loc[table["mode"] == "tensile", "length_mm"].sum()
         rows.append(
@@ -69,7 +67,7 @@ def cracks(inputs: list[Path], data: Path) -> pd.DataFrame:
                 "fragments": summary["fragments"],
                 "insertion_J": float(run.energy["insertion_J"].iloc[-1]),
                 "energy_residual": summary["energy_residual"],
-                "time_step_over_continuum": summary["time_step_min_s"] / step,
+                "time_step_over_continuum": summary["time_step_min_s"] / continuum_step(run, runs),
                 "contact_pairs_max": summary["contact_pairs_max"],
                 "contact_sweeps_mean": summary["contact_sweeps_mean"],
                 "contact_unconverged_steps": summary["contact_unconverged_steps"],
@@ -94,10 +92,10 @@ def bands(inputs: list[Path], data: Path) -> pd.DataFrame:
             {
                 "case": run.name,
                 "confinement_MPa": run.confinement_MPa,
-                "band_angle_deg": band.angle_deg if band.localised else float("nan"),
+                "band_angle_deg": band.angle_deg,
                 "band_elongation": band.elongation,
                 "band_spread": band.spread,
-                "note": "" if band.localised else NO_BAND,
+                "note": f"no band, {band.note}" if band.note else "",
                 "cracks_near_axis_percent": 100.0 * near_axis_share(run.cracks),
                 "median_crack_angle_deg": _median_angle(run.cracks),
             }
@@ -107,12 +105,29 @@ def bands(inputs: list[Path], data: Path) -> pd.DataFrame:
 
 def continuum_of(run: Run, runs: list[Run]) -> Run | None:
     """The run without cracks whose case is the same in all that decides the continuum."""
-    wanted = {key: value for key, value in run.case.items() if key not in OWN_KEYS}
-    for other in runs:
-        own = {key: value for key, value in other.case.items() if key not in OWN_KEYS}
-        if not other.discrete and own == wanted:
-            return other
-    return None
+    return next((other for other in _alike(run, runs) if not other.discrete), None)
+
+
+def continuum_step(run: Run, runs: list[Run]) -> float:
+    """Time step of the continuum in a run's case [s]; NaN where the runs do not tell it.
+
+    Cracks along edges leave the elements as they are, so that the largest step of such a run is
+    that of the continuum as well. A run that may cut elements keeps a reserve from the start.
+    """
+    twin = continuum_of(run, runs)
+    if twin is not None:
+        return twin.summary["time_step_min_s"]
+    along_edges = [one for one in _alike(run, runs) if one.fracture == "inter_element"]
+    return max((one.summary["time_step_max_s"] for one in along_edges), default=float("nan"))
+
+
+def _alike(run: Run, runs: list[Run]) -> list[Run]:
+    """Runs, this one among them, whose cases agree in all but `OWN_KEYS`."""
+    wanted, *others = (
+        {key: value for key, value in one.case.items() if key not in OWN_KEYS}
+        for one in (run, *runs)
+    )
+    return [one for one, case in zip(runs, others, strict=True) if case == wanted]
 
 
 def _median_angle(table: pd.DataFrame) -> float:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from lithofrac.analysis.bands import NEAR_AXIS_DEG
-from lithofrac.analysis.discrete import NO_BAND, bands, cracks
+from lithofrac.analysis.discrete import bands, cracks
 from lithofrac.analysis.runs import Run, find_runs
 from lithofrac.analysis.verdict import OPEN, verdict
 
@@ -40,21 +40,28 @@ def is_soft_block(run: Run) -> bool:
 
 def _band(row, limits: pd.Series) -> dict:
     """Uniaxial: near the load axis or none; under confinement: between two angles."""
-    low, high = limits["band_angle_triaxial_least"], limits["band_angle_triaxial_most"]
-    good, expected = low <= row.band_angle_deg <= high, f"{low:g}° to {high:g}°"
     if row.confinement_MPa == 0.0:
         most = limits["band_angle_uniaxial"]
-        good, expected = (
-            row.note == NO_BAND or row.band_angle_deg < most,
-            f"below {most:g}° or none",
-        )
+        good = bool(row.note) or row.band_angle_deg < most
+        expected = f"below {most:g}° or none"
+    else:
+        low, high = limits["band_angle_triaxial_least"], limits["band_angle_triaxial_most"]
+        good = not row.note and low <= row.band_angle_deg <= high
+        expected = f"{low:g}° to {high:g}°"
     return _row(
         row.case,
         "angle of the shear band to the load axis",
-        computed=row.note or f"{row.band_angle_deg:.1f}°",
+        computed=_angle(row),
         band=expected,
         verdict=verdict(good),
     )
+
+
+def _angle(row) -> str:
+    """Angle of the principal axis, and why it is not that of a band."""
+    if pd.isna(row.band_angle_deg):
+        return row.note
+    return f"{row.band_angle_deg:.1f}°" + (f" ({row.note})" if row.note else "")
 
 
 def _direction(row, limits: pd.Series) -> dict:
@@ -71,14 +78,14 @@ def _direction(row, limits: pd.Series) -> dict:
 
 def _step(row, run: Run, limits: pd.Series) -> dict:
     """Cracks along edges leave the time step as it is, cracks through elements may lower it."""
-    mode = run.case["fracture"]["mode"]
+    mode, ratio = run.fracture, row.time_step_over_continuum
     least = limits[f"time_step_{mode}"]
     return _row(
         row.case,
         f"smallest time step over the continuum's, {mode.replace('_', '-')}",
-        computed=f"{row.time_step_over_continuum:.4g}",
+        computed="-" if pd.isna(ratio) else f"{ratio:.4g}",
         band="1" if least == 1.0 else f"at least {least:g}",
-        verdict=verdict(row.time_step_over_continuum >= least - ROUNDING),
+        verdict=OPEN if pd.isna(ratio) else verdict(ratio >= least - ROUNDING),
     )
 
 

@@ -1,7 +1,7 @@
 """Fields of a run read back: the mesh at one moment, which grows as cracks open it."""
 
 import xml.etree.ElementTree as ElementTree
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import meshio
@@ -48,6 +48,18 @@ class Frame:
     def moved(self, magnification: float = 1.0) -> np.ndarray:
         """Deformed positions, displacements magnified, (n, 2) [mm]."""
         return self.nodes + magnification * self.displacement
+
+    def part(self, chosen: np.ndarray) -> "Frame":
+        """The same with a choice of its elements, (m,) bool, and the nodes that they use."""
+        used, triangles = np.unique(self.triangles[chosen], return_inverse=True)
+        return replace(
+            self,
+            nodes=self.nodes[used],
+            displacement=self.displacement[used],
+            triangles=triangles.reshape(-1, 3),
+            body=self.body[chosen],
+            plastic_strain=self.plastic_strain[chosen],
+        )
 
     def centroids(self) -> np.ndarray:
         """Element centroids in the reference state, (m, 2) [mm]."""

@@ -12,9 +12,11 @@ import pandas as pd
 from lithofrac.analysis.bench import is_bench
 from lithofrac.analysis.frames import Frame, last_frame
 from lithofrac.analysis.strength import Peak, first_peak
+from lithofrac.config.contact import ROCK
 from lithofrac.config.material import Material
 from lithofrac.config.yaml_file import read_yaml
 from lithofrac.data import DataError
+from lithofrac.problem import Mesh
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,11 @@ class Run:
         """Whether cracks could open in the run."""
         return (self.folder / "cracks.parquet").is_file()
 
+    @property
+    def fracture(self) -> str:
+        """How cracks are inserted: off, inter_element or intra_element."""
+        return self.case.get("fracture", {}).get("mode", "off")
+
     @cached_property
     def cracks(self) -> pd.DataFrame:
         """`cracks.parquet`, a row for each opened edge, in the order of opening."""
@@ -74,6 +81,11 @@ class Run:
     def last_frame(self) -> Frame:
         """Mesh and fields at the end."""
         return last_frame(self.folder)
+
+    def is_rock(self, frame: Frame) -> np.ndarray:
+        """Which elements of a frame of this run are of the specimen, (m,) bool."""
+        names = Mesh.load(self.folder / "mesh.npz").body_names
+        return frame.body == names.index(ROCK)
 
     @cached_property
     def rock(self) -> Material:

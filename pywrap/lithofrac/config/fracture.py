@@ -28,7 +28,7 @@ class FractureSection(Section):
     reset: Literal["normal", "paper"] = "normal"
     """Failed elements count their failure anew across the crack and keep all else, or regain all
     their state as in the paper."""
-    interval_steps: int = Field(default=1, ge=1, le=1_000_000)
+    interval_steps: int = Field(default=5, ge=1, le=1_000_000)
     """Steps from one search for failed nodes to the next."""
 
     @model_validator(mode="before")

@@ -7,6 +7,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from lithofrac.analysis import discrete, options, results, tables
+from lithofrac.analysis.punch import punch as punch_table
 from lithofrac.data import DataError
 from lithofrac.plots import (
     energy,
@@ -46,6 +47,7 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "run_time": tables.run_time,
     "cracks": discrete.cracks,
     "bands": discrete.bands,
+    "punch": punch_table,
     "results": results.verdicts,
 }
 FORMATS = (".svg", ".png", ".pdf")

@@ -15,10 +15,12 @@ PARTS = (
     ("fracture_dissipation_J", "fracture", style.ORANGE),
     ("friction_J", "friction", style.PURPLE),
     ("insertion_J", "crack insertion", style.SKY),
+    ("contact_J", "contact pressure", style.BLACK),
+    ("relump_J", "mass lumping", style.LIGHT),
     ("damping_J", "damping", style.GREY),
     ("kinetic_J", "kinetic", style.GREEN),
 )
-WORK = ("friction_J", "insertion_J", "damping_J")  # booked as negative where it takes energy
+WORK = ("friction_J", "insertion_J", "contact_J", "relump_J", "damping_J")  # negative: takes energy
 SMALL = (
     ("kinetic_J", "kinetic", style.GREEN, "-"),
     ("friction_J", "friction", style.PURPLE, "-"),

@@ -80,4 +80,5 @@ def draw_length(axes: Axes, run: Run) -> None:
 
 def stress_label(run: Run) -> str:
     """Words for the axial stress of a scene."""
-    return f"{'punch' if run.test == 'punch' else 'axial'} stress [MPa]"
+    words = {"punch": "punch stress", "brazilian": "2 P / (π D)"}
+    return f"{words.get(run.test, 'axial stress')} [MPa]"

@@ -11,7 +11,6 @@ from lithofrac.analysis.crack_faces import Faces, find_faces
 from lithofrac.analysis.frames import Frame
 from lithofrac.analysis.runs import Run, find_runs
 from lithofrac.plots import style
-from lithofrac.problem import Mesh
 
 ROCK, OTHER = "#f2ead9", "#c9ccd0"
 MODES = {
@@ -20,6 +19,8 @@ MODES = {
 }  # value in cracks.parquet -> words, colour
 VISIBLE, LARGEST = 0.005, 0.02  # displacement over extent: magnified below the one, up to the other
 ROUND = np.array([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000])
+BESIDE, ABOVE = 1.2, 1.7  # inches for labels and the bar, for labels and the legend
+TALLEST, NARROWEST = 5.0, 5.2  # inches, of a panel and of the figure
 AROUND = 0.06  # of the extent, shown beside the bodies; what flies further is cut off
 
 
@@ -30,7 +31,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     faces = find_faces(frame, run.cracks)
     times = 1e3 * run.cracks["time_s"].to_numpy()[faces.crack]
     factor = magnification(frame)
-    drawn, axes = style.new_figure(1, 2, height=_height(frame, 2), sharey=True)
+    drawn, axes = style.new_figure(1, 2, **_size(frame, 2), sharey=True)
     by_mode, by_time = axes[0]
     draw_bodies(by_mode, run, frame, faces, factor)
     draw_modes(by_mode, run, frame, faces, factor)
@@ -56,9 +57,7 @@ def series(inputs: list[Path], data: Path) -> Figure:
     """Patterns of several runs at their ends, by mode, side by side."""
     runs = find_runs(inputs)
     frames = [run.last_frame for run in runs]
-    drawn, axes = style.new_figure(
-        1, len(runs), height=max(_height(frame, len(runs)) for frame in frames), sharey=True
-    )
+    drawn, axes = style.new_figure(1, len(runs), **_size(frames[0], len(runs)), sharey=True)
     for panel, run, frame in zip(axes[0], runs, frames, strict=True):
         faces, factor = find_faces(frame, run.cracks), magnification(frame)
         draw_bodies(panel, run, frame, faces, factor)
@@ -96,8 +95,7 @@ def scale(factor: float) -> str:
 def draw_bodies(axes: Axes, run: Run, frame: Frame, faces: Faces, factor: float) -> None:
     """Draw the deformed bodies, rock tinted and all others neutral, with their outline."""
     moved = frame.moved(factor)
-    names = Mesh.load(run.folder / "mesh.npz").body_names
-    rock = np.array([name == "rock" for name in names])[frame.body]
+    rock = run.is_rock(frame)
     for chosen, colour in ((rock, ROCK), (~rock, OTHER)):
         axes.add_collection(
             PolyCollection(
@@ -160,8 +158,10 @@ def _set_window(axes: Axes, frame: Frame) -> None:
     axes.grid(visible=False)
 
 
-def _height(frame: Frame, columns: int) -> float:
-    """Height [inches] that suits panels of the frame's shape."""
-    width, height = np.ptp(frame.nodes, axis=0)
-    panel = 0.85 * style.WIDTH / columns * height / width
-    return float(np.clip(panel + 1.1, 3.0, 6.5))
+def _size(frame: Frame, columns: int) -> dict[str, float]:
+    """Width and height [inches] of a figure whose panels fill it at the frame's shape."""
+    wide, high = np.ptp(frame.nodes, axis=0)
+    around = 2 * AROUND * max(wide, high)
+    shape = (high + around) / (wide + around)
+    panel = min((style.WIDTH - BESIDE) / columns, TALLEST / shape)
+    return {"width": max(columns * panel + BESIDE, NARROWEST), "height": panel * shape + ABOVE}

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 
 from lithofrac.analysis.frames import Frame
@@ -31,9 +31,10 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     curves.set_title(f"sandstone, {TITLES[kind(runs[0])]}")
     curves.set_ylim(0, None)
     curves.legend(loc="upper left", title="confinement", handlelength=1.2)
-    top = max(float(np.quantile(run.last_frame.plastic_strain, 0.99)) for run in runs)
-    for panel, run in zip(specimens, runs, strict=True):
-        drawn_field = draw_plastic_strain(panel, run.last_frame, max(top, 1e-6))
+    rocks = [run.last_frame.part(run.is_rock(run.last_frame)) for run in runs]
+    top = max(float(np.quantile(rock.plastic_strain, 0.99)) for rock in rocks)
+    for panel, run, rock in zip(specimens, runs, rocks, strict=True):
+        drawn_field = draw_plastic_strain(panel, rock, max(top, 1e-6))
         panel.set_title(f"{run.confinement_MPa:g} MPa", loc="center", fontweight="normal")
     bar = drawn.colorbar(
         drawn_field, ax=specimens, orientation="horizontal", shrink=0.8, pad=0.04, aspect=30
@@ -43,11 +44,14 @@ def figure(inputs: list[Path], data: Path) -> Figure:
 
 
 def draw_plastic_strain(axes: Axes, frame: Frame, top: float) -> PolyCollection:
-    """Draw plastic strain from 0 to `top` on the deformed mesh."""
+    """Draw plastic strain from 0 to `top` on the deformed mesh, with its outline and cracks."""
+    moved = frame.moved()
     drawn = axes.tripcolor(
-        *frame.moved().T, frame.plastic_strain, triangles=frame.triangles, cmap="magma_r",
+        *moved.T, frame.plastic_strain, triangles=frame.triangles, cmap="magma_r",
         vmin=0.0, vmax=top, rasterized=True,
     )  # fmt: skip
+    lines = moved[frame.boundary()]
+    axes.add_collection(LineCollection(lines, colors=style.GREY, linewidths=0.4))
     axes.set_aspect("equal")
     axes.set_axis_off()
     return drawn

@@ -13,7 +13,7 @@ from lithofrac.plots import style
 from lithofrac.problem import Mesh, PressureLoad, Problem, VelocityLoad
 from lithofrac.scenes import make_problem
 
-BODIES = ("#f2ead9", "#dfe6ec", "#e8e2ef")
+BODIES = ("#f2ead9", "#dfe6ec", "#e8e2ef", "#dfebdf", "#efdfdf")
 ARROWS = 12  # symbols along one boundary at most
 
 

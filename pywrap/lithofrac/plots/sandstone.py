@@ -24,7 +24,10 @@ SOFT = (
     (("triaxial", False), "o", style.BLUE),
     (("plane_strain", False), "*", style.GREEN),
 )
-SWEEP = (("v", style.ORANGE), ("s", style.RED), ("D", style.PURPLE), ("P", style.SKY))
+SWEEP = (
+    ("v", style.ORANGE), ("s", style.RED), ("D", style.PURPLE), ("P", style.SKY),
+    ("<", style.BLACK),
+)  # fmt: skip
 SERIES = ("^", "x", "+", "1", "2")  # markers of digitised series
 
 
@@ -32,13 +35,15 @@ def stress_strain(inputs: list[Path], data: Path) -> Figure:
     """Fig. 9: axial stress against axial strain, one panel a test, one curve a confinement."""
     runs = [run for run in find_runs(inputs) if run.stiffness in (0.0, DEFAULT_STIFFNESS)]
     tests = [test for test in TITLES if any(kind(run) == test for run in runs)]
+    mixed = len({run.discrete for run in runs}) == 2
     digitised = load_curves(data, "9")
     drawn, axes = style.new_figure(1, max(len(tests), 1), height=3.6, sharey=True)
     colours = style.confinement_colours([run.confinement_MPa for run in runs])
     for panel, test in zip(axes.flat, tests, strict=False):
         own = [run for run in runs if kind(run) == test]
         for run in own:
-            draw_curve(panel, run, colours[run.confinement_MPa])
+            dash = "--" if mixed and not run.discrete else "-"
+            draw_curve(panel, run, colours[run.confinement_MPa], dash)
         for marker, curve in zip(SERIES, _of(digitised, own), strict=False):
             draw_points(panel, curve, marker)
         panel.set(title=TITLES[test], xlabel="axial strain [%]", xlim=(0, None), ylim=(0, None))
@@ -53,11 +58,13 @@ def stress_strain(inputs: list[Path], data: Path) -> Figure:
         axes[0, 0].plot([], [], color=colour, label=f"{level:g}")[0]
         for level, colour in colours.items()
     ]
-    mark = axes[0, 0].plot([], [], "o", ms=4, mfc="white", mec=style.BLACK, label="peak")[0]
+    handles += axes[0, 0].plot([], [], "o", ms=4, mfc="white", mec=style.BLACK, label="peak")
+    for dash, words in (("-", "discrete"), ("--", "continuum")) if mixed else ():
+        handles += axes[0, 0].plot([], [], dash, color=style.BLACK, label=words)
     drawn.legend(
-        handles=[*handles, mark],
+        handles=handles,
         loc="outside upper center",
-        ncols=len(handles) + 1,
+        ncols=len(handles),
         title="confinement [MPa]",
     )
     return drawn
@@ -76,12 +83,12 @@ def strength(inputs: list[Path], data: Path) -> Figure:
     draw_bench(panel, stiff)
     for test, marker, colour in SOFT:
         own = [run for run in runs if kind(run) == test]
-        draw_series(panel, own, marker, colour, f"{TITLES[test]}, this code")
-    sweep = sorted({run.stiffness for run in runs if run.stiffness > 0.0})
-    for (marker, colour), stiffness in zip(SWEEP, sweep, strict=False):
-        own = [run for run in runs if run.stiffness == stiffness]
-        label = f"plane strain, k = {stiffness:g} E, this code"
-        draw_series(panel, own, marker, colour, label)
+        draw_series(panel, own, marker, colour, TITLES[test])
+    sweep = sorted({(run.stiffness, run.discrete) for run in runs if run.stiffness > 0.0})
+    for (marker, colour), (stiffness, discrete) in zip(SWEEP, sweep, strict=False):
+        own = [run for run in runs if (run.stiffness, run.discrete) == (stiffness, discrete)]
+        words = ", discrete" if discrete else ""
+        draw_series(panel, own, marker, colour, f"plane strain, k = {stiffness:g} E{words}")
     digitised = load_curves(data, "10")
     for marker, curve in zip(SERIES, digitised, strict=False):
         panel.errorbar(

@@ -11,6 +11,7 @@ stands for anything), and `columns` keeps columns. Text outside the blocks is ne
 import re
 from fnmatch import fnmatchcase
 
+import numpy as np
 import pandas as pd
 
 from lithofrac.data import DataError
@@ -61,5 +62,6 @@ def _chosen(block: re.Match, table: pd.DataFrame, file: str) -> pd.DataFrame:
         if key == "columns":
             columns = asked
         else:
-            table = table[[fnmatchcase(str(cell), value) for cell in table[key]]]
+            kept = [fnmatchcase(str(cell), value) for cell in table[key]]
+            table = table[np.array(kept, dtype=bool)]  # a list of no rows would choose columns
     return table[columns]

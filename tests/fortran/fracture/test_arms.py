@@ -171,3 +171,17 @@ def test_mirroring_the_mesh_mirrors_the_crack(rough_lattice):
             there = faces(cracked((nodes, triangles), CENTRE, degrees, mode))
             here = faces(cracked(mirrored, CENTRE, -degrees, mode))
             assert same([{(x, -y + 0.0) for x, y in face} for face in here], there)
+
+
+def test_an_edge_stays_open_though_its_element_is_cut():
+    """One arm cuts an element of 169 degrees, the other goes along an edge of it."""
+    rim = {62: 1.04, 101: 1.19, 141: 0.9, 167: 1.0, 253: 0.92}
+    nodes = [[0.0, 0.0], *(radius * unit(angle) for angle, radius in rim.items())]
+    nodes += [2.0 * unit(a) for a in (81.5, 121, 154, 210, 337.5)]
+    triangles = [[0, i, i % 5 + 1] for i in range(1, 6)]
+    triangles += [[i, i + 5, i % 5 + 1] for i in range(1, 6)]
+    loose = Guard(least_step=0.01, least_area=0.001, least_angle=0.01)
+    topology = cracked((np.array(nodes), np.array(triangles)), 0, 55, "intra", loose)
+    assert (~topology.state().alive).sum() == 2
+    assert len(faces(topology)) == 2
+    assert spokes((np.array(nodes), None), 0, 5)[0] in faces(topology)

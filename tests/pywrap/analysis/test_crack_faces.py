@@ -26,6 +26,14 @@ def test_frame_comes_back_in_millimetres(run):
     np.testing.assert_allclose(frame.moved(2.0), frame.nodes + 2.0 * frame.displacement)
 
 
+def test_rock_is_told_from_its_platen(run):
+    rock = run.last_frame.part(run.is_rock(run.last_frame))
+    assert rock.areas().sum() == pytest.approx(24.0)
+    assert rock.nodes.max() == 6.0
+    assert len(rock.displacement) == len(rock.nodes) == rock.triangles.max() + 1
+    assert len(rock.body) == len(rock.plastic_strain) == len(rock.triangles)
+
+
 def test_last_frame_is_that_of_the_latest_time_not_of_the_last_line(run):
     series = run.folder / "fields.pvd"
     line = next(line for line in series.read_text().splitlines() if "DataSet" in line)

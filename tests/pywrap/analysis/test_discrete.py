@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 from lithofrac.analysis import discrete
+from lithofrac.analysis.bands import Band
 from lithofrac.analysis.discrete_results import discrete_rows
 from lithofrac.analysis.runs import Run
 from lithofrac.data import DataError
@@ -35,9 +36,8 @@ def make_block(make_cracked_run):
     """make_block(name, confinement=0, mode="inter_element") -> discrete block, soft pressure."""
 
     def made(name, confinement=0.0, mode="inter_element", **summary):
-        folder = make_cracked_run(name, test="plane_strain", confinement=confinement)
-        edited(folder, "summary.json", **summary)
-        return edited(folder, "case.yaml", fracture={"mode": mode})
+        folder = make_cracked_run(name, mode=mode, test="plane_strain", confinement=confinement)
+        return edited(folder, "summary.json", **summary)
 
     return made
 
@@ -67,11 +67,18 @@ def test_cost_is_held_against_the_continuum_of_the_same_case(make_block, make_ru
     assert table.loc["soft_p00", "time_step_over_continuum"] == 1.0
 
 
-def test_without_a_continuum_the_step_is_held_against_its_own_first(make_block, data_folder):
-    row = discrete.cracks([make_block("soft_p00")], data_folder).iloc[0]
-    assert row["continuum"] is None or np.isnan(row["continuum"])
-    assert row["time_step_over_continuum"] == pytest.approx(0.9)
-    assert np.isnan(row["core_time_over_continuum"])
+def test_without_a_continuum_the_step_is_held_against_runs_with_cracks_along_edges(
+    make_block, data_folder
+):
+    """Their first step, 1e-8 s; of a run that may cut elements it says nothing."""
+    cut = make_block("cut", mode="intra_element", time_step_min_s=4e-9, time_step_max_s=4e-9)
+    alone = discrete.cracks([cut], data_folder).iloc[0]
+    assert pd.isna(alone["continuum"])
+    assert np.isnan(alone["time_step_over_continuum"])
+    both = discrete.cracks([cut, make_block("along")], data_folder).set_index("case")
+    assert both.loc["cut", "time_step_over_continuum"] == pytest.approx(0.4)
+    assert both.loc["along", "time_step_over_continuum"] == pytest.approx(0.9)
+    assert np.isnan(both.loc["along", "core_time_over_continuum"])
 
 
 def test_directions_stand_beside_each_other(make_block, data_folder):
@@ -114,23 +121,37 @@ def test_vertical_band_holds_without_confinement_and_fails_with(make_block, data
     assert rows["soft_p10", "share"]["verdict"] == "holds"
 
 
+def test_angle_that_is_not_that_of_a_band_says_why(make_block, monkeypatch, data_folder, limits):
+    def computed(band):
+        monkeypatch.setattr(discrete, "find_band", lambda frame: band)
+        return verdicts([block], data_folder, limits)["soft_p10", "angle"]
+
+    block, nan = make_block("soft_p10", 10.0), float("nan")
+    assert computed(Band(30.0, 9.0, 0.1))["verdict"] == "holds"
+    crossing = computed(Band(30.0, 2.0, 0.1))
+    assert crossing["computed"] == "30.0° (no band, no single axis)"
+    assert crossing["verdict"] == "does not hold"
+    assert computed(Band(nan, nan, nan))["computed"] == "no band, no plastic strain"
+
+
 def test_stiff_blocks_and_other_scenes_are_measured_without_a_verdict(
     make_cracked_run, data_folder, limits
 ):
     folder = make_cracked_run("stiff", test="plane_strain", stiffness=0.02)
-    edited(folder, "case.yaml", fracture={"mode": "inter_element"})
     rows = verdicts([folder], data_folder, limits)
     assert {quantity for _, quantity in rows} == {"smallest"}
     assert len(discrete.bands([folder], data_folder)) == 1
 
 
 def test_step_may_fall_only_where_elements_are_cut(make_block, data_folder, limits):
-    """Both took 0.9 of their first step."""
+    """Both took 0.9 of the step of the continuum."""
     blocks = [make_block("inter"), make_block("intra", mode="intra_element")]
     rows = verdicts(blocks, data_folder, limits)
     assert rows["inter", "smallest"]["verdict"] == "does not hold"
     assert rows["intra", "smallest"]["verdict"] == "holds"
     assert rows["intra", "smallest"]["band"] == "at least 0.4"
+    alone = verdicts([make_block("alone", 5.0, "intra_element")], data_folder, limits)
+    assert alone["alone", "smallest"]["verdict"] == "cannot be checked"
 
 
 def test_core_time_has_a_verdict_where_there_is_a_continuum(

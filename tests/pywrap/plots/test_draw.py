@@ -91,9 +91,27 @@ def test_digitised_strengths_replace_the_badge_of_figure_10(runs, digitise):
 
 
 def test_run_without_a_peak_is_shown_as_such(runs, data_folder):
-    assert "plane strain, k = 0.05 E, this code: no peak" in words(
-        sandstone.strength(runs, data_folder)
+    assert "plane strain, k = 0.05 E: no peak" in words(sandstone.strength(runs, data_folder))
+
+
+def test_discrete_runs_stand_apart_from_the_continuum(runs, make_cracked_run, data_folder):
+    """A soft block gets a panel, a stiff one with cracks is drawn through beside dashes."""
+    runs += [
+        make_cracked_run("sandstone_soft_p00", test="plane_strain"),
+        make_cracked_run("sandstone_cracked_p00", test="plane_strain", stiffness=0.02),
+    ]
+    figure = sandstone.stress_strain(runs, data_folder)
+    panels = figure.axes
+    assert [panel.get_title(loc="left") for panel in panels] == list(sandstone.TITLES.values())
+    dashes = [sorted({line.get_linestyle() for line in p.lines} - {"None"}) for p in panels]
+    assert dashes[1:] == [["-"], ["-", "--"]]
+    assert {"discrete", "continuum"} <= set(
+        words(sandstone.stress_strain(runs, data_folder)).split()
     )
+    text = words(sandstone.strength(runs, data_folder))
+    assert "plane strain, soft pressure" in text
+    assert "plane strain, k = 0.02 E\n" in text + "\n"
+    assert "plane strain, k = 0.02 E, discrete" in text
 
 
 def test_figures_label_every_axis_with_a_unit(runs, make_bench, data_folder):

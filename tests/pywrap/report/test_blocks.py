@@ -45,6 +45,12 @@ def test_star_stands_for_anything():
     assert ("soft_p00" in text, "stiff_p00" in text, "soft_p10" in text) == (True, True, False)
 
 
+def test_rows_are_chosen_of_a_table_that_has_none():
+    tables = {"strength": TABLES["strength"].iloc[:0]}
+    text = fill(block(" test=soft columns=case,strength_MPa"), tables, "a.md")
+    assert "Nothing of this kind was run." in text
+
+
 def test_two_blocks_do_not_swallow_the_text_between_them():
     text = fill(block() + block(), TABLES, "a.md")
     assert text.count("after") == 2

@@ -143,13 +143,17 @@ def test_bad_suite_stops_before_any_job(tree):
     edited(suite, "confinment_MPa: 10", "confinement_MPa: 10")
 
 
-def test_comparison_is_drawn_when_the_suite_has_its_cases_and_only_then(tree):
+def test_cracks_and_comparisons_are_drawn_where_the_suite_has_them_and_only_there(tree):
     text = (tree / "configs" / "three.yaml").read_text()
-    more = "  {}: {{extends: cases/sandstone_plane_strain.yaml}}\n"
-    (tree / "configs" / "four.yaml").write_text(text + more.format("punch_gf60"))
-    jobs = planned(tree, "four")
-    assert (jobs["simulate"], jobs["plot_compared"]) == (1, 1)
-    assert "plot_compared" not in planned(tree)
+    more = """\
+  sandstone_soft_p00: {extends: cases/sandstone_soft.yaml}
+  punch_gf60: {extends: cases/punch.yaml}
+  punch_discrete: {extends: cases/punch.yaml, set: {fracture.mode: inter_element}}
+"""
+    (tree / "configs" / "six.yaml").write_text(text + more)
+    jobs = planned(tree, "six")
+    assert (jobs["simulate"], jobs["plot_cracks"], jobs["plot_compared"]) == (3, 2, 2)
+    assert not {"plot_cracks", "plot_compared"} & set(planned(tree))
 
 
 def test_pages_are_filled_when_they_are_asked_for_and_only_then(tree):
