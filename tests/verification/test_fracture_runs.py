@@ -42,14 +42,17 @@ def bits(run):
 
 @pytest.fixture(scope="module", params=MODES)
 def parted(request):
-    """A bar run through all its cracks, and the steps at which they came."""
+    """A bar run through all its cracks, the steps at which they came, and its bits.
+
+    The ledger notes the largest energy that it is asked for, so that asking changes the bits.
+    """
     run = Run(squeezed_bar(request.param))
     run.advance(STEPS[request.param])
-    return run, np.unique(run.cracks()[:, 0].astype(int))
+    return run, np.unique(run.cracks()[:, 0].astype(int)), bits(run)
 
 
 def test_the_ledger_closes_while_a_bar_parts(parted):
-    whole, steps = parted
+    whole, steps, _ = parted
     run, residual = Run(whole.problem), 0.0
     while run.step < whole.step:
         run.advance(50)
@@ -61,7 +64,7 @@ def test_the_ledger_closes_while_a_bar_parts(parted):
 
 def test_faces_that_crack_keep_their_pressure(parted):
     """Pressure times length of the sides, though their edges were split."""
-    run, _ = parted
+    run, *_ = parted
     n = len(run.problem.velocity_loads)
     force = run.loads()[n:, 0]
     np.testing.assert_allclose(force, 1e6 * HEIGHT, rtol=0.02)
@@ -69,7 +72,7 @@ def test_faces_that_crack_keep_their_pressure(parted):
 
 def test_cracks_along_edges_leave_the_step_of_the_continuum(parted):
     """Equal in inter-element runs; cuts leave at least 0.4 of it."""
-    run, _ = parted
+    run, *_ = parted
     continuum = Run(replace(run.problem, fracture=None))
     if run.problem.fracture.mode == "inter_element":
         assert not run.cracks()[:, THROUGH].any()
@@ -95,14 +98,13 @@ def test_threads_change_no_bit_of_a_run_that_cracks(mode):
 @pytest.mark.parametrize("after", [-1, 0, 1, 7, 40])
 def test_a_resume_in_the_middle_of_cracking_is_bitwise(parted, after):
     """Saved just before a crack, with it, and while its bonds fade."""
-    whole, steps = parted
+    whole, steps, bits_of_whole = parted
     first, second = Run(whole.problem), Run(whole.problem)
     first.advance(int(steps[len(steps) // 2]) + after)
     assert 0 < first.sizes().cracks
     second.restore(first.save())
     second.advance(whole.step - second.step)
-    assert bits(second) == bits(whole)
-    assert second.energy() == whole.energy()
+    assert bits(second) == bits_of_whole
     assert second.sizes() == whole.sizes()
     # `save` cannot show what it leaves out
     np.testing.assert_array_equal(second.cracks(), whole.cracks())

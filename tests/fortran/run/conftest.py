@@ -53,7 +53,12 @@ def squeeze(mesh):
     return {"velocity_loads": loads, "pressure_loads": sides}, np.zeros_like(mesh.nodes)
 
 
-LOADS = {"burst": (burst, 6), "pull": (pull, 4), "squeeze": (squeeze, 6)}  # and squares a side
+# and squares a side, so that cracks come in either mode
+LOADS = {
+    "burst": (burst, {"inter_element": 6, "intra_element": 6}),
+    "pull": (pull, {"inter_element": 5, "intra_element": 4}),
+    "squeeze": (squeeze, {"inter_element": 7, "intra_element": 7}),
+}
 
 
 @pytest.fixture(scope="session")
@@ -61,7 +66,8 @@ def cracking():
     """cracking(load, mode, damping=none) -> Cracking, a square of rock."""
 
     def made(load, mode, damping=None):
-        load, n = LOADS[load]
+        load, squares = LOADS[load]
+        n = squares[mode]
         mesh = rectangle(n, n, SIZE, SIZE, jitter=0.2)
         rock = Material.load("sandstone").model_copy(update={"fracture_energy_J_m2": 50.0})
         loads, velocity = load(mesh)
@@ -71,7 +77,7 @@ def cracking():
             rock,
             damping=damping or Damping(),
             contact=Contact(friction, 0.4),
-            fracture=Fracture(mode=mode),
+            fracture=Fracture(mode=mode, reset="paper"),  # cracks soon come again
             **loads,
         )
         return Cracking(given, velocity)
