@@ -2,7 +2,7 @@
 !> (Klerck, Sellers & Owen 2004, eqs 13 and 21), and what failed elements regain at a crack.
 module lithofrac_fracture_element_failure
    use lithofrac_base_kinds, only: wp
-   use lithofrac_fracture_failure_map, only: failure_factor
+   use lithofrac_fracture_failure_map, only: failure_factor, largest_factor
    use lithofrac_material_rock, only: rock_type
    use lithofrac_mechanics_chunks, only: chunks_type, width
    use lithofrac_mechanics_fields, only: inelastic_type
@@ -17,7 +17,8 @@ module lithofrac_fracture_element_failure
 contains
 
    !> Has any element used up its fracture energy in the plane, and how far have such elements
-   !> gone in all? While the sum stands still, the failure map does as well.
+   !> gone in all? While the sum stands still, the failure map does as well: both end at the
+   !> largest factor, so elements that are far beyond it ask for no new map.
    pure function any_failed(chunks, rocks, state) result(sum_of_factors)
       type(chunks_type), intent(in) :: chunks
       type(rock_type), intent(in) :: rocks(:)        !! (n_bodies)
@@ -36,7 +37,8 @@ contains
             do i = 1, width
                factor = -state%softening(i, chunk)*max(state%opening(i, 1, chunk), &
                   state%opening(i, 2, chunk))
-               part = part + merge(factor, 0.0_wp, factor >= rock%tensile_strength)
+               part = part + merge(min(factor, largest_factor*rock%tensile_strength), 0.0_wp, &
+                  factor >= rock%tensile_strength)
             end do
             if (rock%tensile_strength > 0.0_wp) then
                sum_of_factors = sum_of_factors + part/rock%tensile_strength

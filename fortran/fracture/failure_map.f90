@@ -12,7 +12,7 @@ module lithofrac_fracture_failure_map
    implicit none
    private
 
-   public :: nodal_failure_type, average_at_node, failure_factor
+   public :: nodal_failure_type, average_at_node, failure_factor, largest_factor, mean_factor
    public :: by_volume, by_failure_factor
 
    integer, parameter :: by_volume = 0           !! "usually taken as the element volume"
@@ -61,38 +61,69 @@ contains
       type(fan_type), intent(inout) :: fan    !! of the node, afterwards
       type(nodal_failure_type), intent(out) :: failure
 
-      real(wp) :: mean(2), weight, sum_factor, sum_weight, sum_direction, largest, long, top(2)
+      real(wp) :: mean(2), weight, sum_direction, largest, long, top(2)
       integer :: element, i
 
       call fan_of_node(mesh, topology, node, fan)
+      failure%factor = mean_factor(mesh, factor, weights, fan)
       mean = 0.0_wp
-      sum_factor = 0.0_wp
-      sum_weight = 0.0_wp
       sum_direction = 0.0_wp
       largest = 0.0_wp
       top = 0.0_wp
       do i = 1, fan%n
          element = fan%element(i)
-         associate (corner => mesh%nodes(:, mesh%triangles(:, element)))
-            weight = triangle_area(corner(:, 1), corner(:, 2), corner(:, 3))
-         end associate
-         if (weights == by_failure_factor) weight = weight*factor(element)
-         sum_weight = sum_weight + weight
-         sum_factor = sum_factor + weight*factor(element)
          long = norm2(normal(:, element))
          if (.not. (factor(element) > 0.0_wp .and. long > 0.0_wp)) cycle
+         weight = weight_of(mesh, element, factor(element), weights)
          mean = mean + weight*normal(:, element)/long
          sum_direction = sum_direction + weight
          if (factor(element) <= largest) cycle
          largest = factor(element)
          top = normal(:, element)/long
       end do
-      if (sum_weight > 0.0_wp) failure%factor = sum_factor/sum_weight
       if (sum_direction <= 0.0_wp) return
       failure%agreement = norm2(mean)/sum_direction
       if (failure%agreement < least_agreement) mean = top
       failure%along = turned_half(-mean)
    end subroutine average_at_node
+
+   !> F_p alone (eq. 22): most nodes need no direction, which costs more.
+   pure function mean_factor(mesh, factor, weights, fan) result(mean)
+      type(mesh_type), intent(in) :: mesh
+      real(wp), intent(in) :: factor(:)       !! (>= n_elements) F_k [-]
+      integer, intent(in) :: weights          !! `by_volume` or `by_failure_factor`
+      type(fan_type), intent(in) :: fan       !! of the node
+      real(wp) :: mean
+
+      real(wp) :: weight, sum_factor, sum_weight
+      integer :: i
+
+      sum_factor = 0.0_wp
+      sum_weight = 0.0_wp
+      do i = 1, fan%n
+         associate (element => fan%element(i))
+            weight = weight_of(mesh, element, factor(element), weights)
+            sum_weight = sum_weight + weight
+            sum_factor = sum_factor + weight*factor(element)
+         end associate
+      end do
+      mean = 0.0_wp
+      if (sum_weight > 0.0_wp) mean = sum_factor/sum_weight
+   end function mean_factor
+
+   pure function weight_of(mesh, element, factor, weights) result(weight)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element
+      real(wp), intent(in) :: factor
+      integer, intent(in) :: weights
+      real(wp) :: weight
+
+      associate (a => mesh%triangles(1, element), b => mesh%triangles(2, element), &
+            c => mesh%triangles(3, element))
+         weight = triangle_area(mesh%nodes(:, a), mesh%nodes(:, b), mesh%nodes(:, c))
+      end associate
+      if (weights == by_failure_factor) weight = weight*factor
+   end function weight_of
 
    !> Unit vector at half the angle of a vector: (cos 2 a, sin 2 a) to (cos a, sin a), cos a >= 0.
    !>

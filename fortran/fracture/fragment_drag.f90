@@ -113,7 +113,7 @@ contains
          integer, intent(in) :: first
          integer, intent(in) :: last
 
-         real(wp) :: total, centre(2), mean(2), spin, inertia, arm(2), slip(2)
+         real(wp) :: total, centre(2), mean(2), spin, inertia, arm(2), slip(2), rate
          integer :: i
 
          total = 0.0_wp
@@ -137,10 +137,12 @@ contains
             inertia = inertia + mass(drag%node(i))*dot_product(arm, arm)
          end do
          spin = spin/inertia
+         ! one rate a fragment: bodies that share nodes may have two, and a sum that is not zero
+         rate = alpha(body_of_node(drag%node(first)))
          do i = first, last
             arm = nodes(:, drag%node(i)) + u(:, drag%node(i)) - centre
             slip = v(:, drag%node(i)) - mean - spin*[-arm(2), arm(1)]
-            drag%force(:, i) = -alpha(body_of_node(drag%node(i)))*mass(drag%node(i))*slip
+            drag%force(:, i) = -rate*mass(drag%node(i))*slip
             external(:, drag%node(i)) = external(:, drag%node(i)) + drag%force(:, i)
          end do
       end subroutine drag_fragment

@@ -7,7 +7,8 @@
 module lithofrac_fracture_plan
    use lithofrac_base_kinds, only: wp
    use lithofrac_fracture_arms, only: choose_arms, inter_element
-   use lithofrac_fracture_failure_map, only: average_at_node, by_volume, nodal_failure_type
+   use lithofrac_fracture_failure_map, only: average_at_node, by_volume, mean_factor, &
+      nodal_failure_type
    use lithofrac_fracture_one_band, only: runs_beside_face
    use lithofrac_mesh_cut, only: guard_type
    use lithofrac_mesh_mesh, only: mesh_type
@@ -126,9 +127,10 @@ contains
       n = 0
       do node = 1, mesh%n_nodes
          if (.not. near(node)) cycle
+         call fan_of_node(mesh, topology, node, fan)
+         if (.not. mean_factor(mesh, factor, weights, fan) >= max(1.0_wp, retry(node))) cycle
          call average_at_node(mesh, topology, node, factor, normal, weights, fan, failure)
-         if (.not. (failure%factor >= 1.0_wp .and. failure%agreement > 0.0_wp)) cycle
-         if (failure%factor < retry(node)) cycle
+         if (.not. failure%agreement > 0.0_wp) cycle
          n = n + 1
          nodes(n) = node
          failures(n) = failure

@@ -159,7 +159,8 @@ contains
          associate (n => mesh%n_nodes, m => mesh%n_elements)
             if (visitor%mode == restoring) then
                if (visitor%is_beyond(n*3 + m*8) .or. n < first_nodes .or. m < first_elements) then
-                  call set_failure(status, bad_checkpoint, "checkpoint: it belongs to another model")
+                  call set_failure(status, bad_checkpoint, &
+                     "checkpoint: it belongs to another model")
                   mesh%n_nodes = first_nodes
                   mesh%n_elements = first_elements
                   return

@@ -56,14 +56,16 @@ contains
       call rebuild(model, status)
       if (status%code /= ok) return
       call renew_forces(model, edits)
-      if (edits%n_elements > 0) call book_relump(model, energies(model) - energy)
+      energy = energies(model) - energy
+      if (edits%n_elements == 0) energy(1) = 0.0_wp
+      call book_change(model, energy)
    end subroutine grow
 
-   !> Mass and forces have gone to new nodes on edges that were cut.
+   !> Mass and forces have gone to new nodes on edges that were cut, and drag has ended.
    !>
    !> A new node between a driven and a free one is free, so reactions change; but both half
    !> steps around now have had the old ones.
-   subroutine book_relump(model, change)
+   subroutine book_change(model, change)
       type(model_type), intent(inout) :: model
       real(wp), intent(in) :: change(4)         !! of `energies`
 
@@ -72,7 +74,7 @@ contains
          ledger%external = ledger%external - change(3) - change(4)
          kinetic = kinetic + change(1) - change(2) - change(4)
       end associate
-   end subroutine book_relump
+   end subroutine book_change
 
    !> All that follows from mesh, topology, heirs and loads; nodal fields get their new length.
    subroutine rebuild(model, status)
@@ -121,6 +123,9 @@ contains
             find_parts(model%mesh, model%fracture%topology))
          lost = lost - drag_power(drag, fields%v)
          model%ledger%damping = model%ledger%damping + 0.5_wp*model%dt*lost
+         associate (kinetic => model%sums(1, size(model%sums, 2)))
+            kinetic = kinetic + 0.5_wp*model%dt*lost
+         end associate
          fields%drag_mass(:, drag%node) = 0.0_wp
          fields%fit_mass(drag%node) = 0.0_wp
       end associate

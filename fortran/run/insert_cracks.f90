@@ -278,8 +278,9 @@ contains
             if (parent(1) /= parent(2)) then
                root(i) = 0
             else if (parent(1) > edits%nodes_before) then
-               if (root(parent(1) - edits%nodes_before) > 0) &
-                  root(i) = root(parent(1) - edits%nodes_before)
+               associate (first => root(parent(1) - edits%nodes_before))
+                  if (first > 0) root(i) = first
+               end associate
             end if
          end associate
       end do

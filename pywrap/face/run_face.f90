@@ -10,8 +10,8 @@ module run_face
    use lithofrac_run_check, only: check_model
    use lithofrac_run_checkpoint, only: checkpoint_size, restore, save_state
    use lithofrac_run_energy, only: ledger_type, pack_ledger
-   use lithofrac_run_model, only: add_contact, add_fracture, add_pressure, add_velocity, model_type, &
-      new_model, set_motion, tag_surface
+   use lithofrac_run_model, only: add_contact, add_fracture, add_pressure, add_velocity, &
+      model_type, new_model, set_motion, tag_surface
    use lithofrac_run_observe, only: element_state, energy_now, load_records
    use lithofrac_run_settings, only: settings_type
    use lithofrac_run_step, only: advance

@@ -38,7 +38,7 @@ def test_no_event_breaks_mass_step_or_topology(cracking, load, mode):
         assert run.nodes()[2].sum() == pytest.approx(mass, rel=1e-14)
         assert run.nodes()[2].min() > 0.0
         assert run.dt == dt
-    assert n >= 3
+    assert n >= 2
     alive = run.mesh()[3]
     assert (mode == "intra_element") == bool(np.any(~alive))
 
@@ -75,7 +75,7 @@ def test_no_event_leaves_a_gap_in_the_ledger(cracking, load, mode, release):
         residual, cracks = now, run.sizes().cracks
     moved, cracked = np.array(moved), np.array(cracked)
     around = cracked | np.roll(cracked, 1)
-    assert cracked.sum() >= 3
+    assert cracked.sum() >= 2
     assert moved[around].max() < 10 * moved[~around].max() < 1e-5
     assert run.energy().relump <= 0.0
     assert (run.energy().relump < 0.0) == (mode == "intra_element")
