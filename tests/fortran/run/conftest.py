@@ -37,6 +37,12 @@ def burst(mesh):
     return {}, 40.0 * (mesh.nodes - 0.5 * SIZE) * uneven
 
 
+def blow(mesh):
+    """As `burst`, with a little follower pressure from below."""
+    _, velocity = burst(mesh)
+    return {"pressure_loads": (PressureLoad("bottom", mesh.edge_sets["bottom"], 1.0),)}, velocity
+
+
 def pull(mesh):
     """Two sides are driven apart, the others are free."""
     loads = (hold("l", mesh.nodes_of("left"), 0, -1.5), hold("r", mesh.nodes_of("right"), 0, 1.5))
@@ -53,7 +59,12 @@ def squeeze(mesh):
     return {"velocity_loads": loads, "pressure_loads": sides}, np.zeros_like(mesh.nodes)
 
 
-LOADS = {"burst": (burst, 6), "pull": (pull, 4), "squeeze": (squeeze, 6)}  # and squares a side
+LOADS = {  # and squares a side
+    "burst": (burst, 6),
+    "blow": (blow, 6),
+    "pull": (pull, 4),
+    "squeeze": (squeeze, 6),
+}
 
 
 @pytest.fixture(scope="session")
