@@ -9,7 +9,6 @@ module lithofrac_fracture_plan
    use lithofrac_fracture_arms, only: choose_arms, inter_element
    use lithofrac_fracture_failure_map, only: average_at_node, by_volume, mean_factor, &
       nodal_failure_type
-   use lithofrac_fracture_one_band, only: runs_beside_face
    use lithofrac_mesh_cut, only: guard_type
    use lithofrac_mesh_mesh, only: mesh_type
    use lithofrac_mesh_rings, only: fan_of_node, fan_type
@@ -74,7 +73,7 @@ contains
             if (n == size(planned)) exit
             call fan_of_node(mesh, topology, node, fan)
             call choose_arms(mesh, topology, fan, failure%along, rules%mode, rules%guard, arms)
-            if (is_barred(mesh, topology, fan, arms, failure%along)) then
+            if (size(arms) == 0) then
                n_closed = n_closed + 1
                retry(node) = worth_another_look*failure%factor
             else if (.not. any(locked(touched_elements(topology, fan, arms)))) then
@@ -87,20 +86,6 @@ contains
       cracks = planned(:n)
       n_waiting = size(nodes) - n - n_closed
    end subroutine plan_cracks
-
-   !> Is there no way for a crack? One that begins in the inside keeps off the faces of others;
-   !> one that is there runs on wherever it leads.
-   pure function is_barred(mesh, topology, fan, arms, along) result(yes)
-      type(mesh_type), intent(in) :: mesh
-      type(topology_type), intent(in) :: topology
-      type(fan_type), intent(in) :: fan
-      type(arm_type), intent(in) :: arms(:)
-      real(wp), intent(in) :: along(2)
-      logical :: yes
-
-      yes = size(arms) == 0
-      if (.not. yes .and. fan%closed) yes = runs_beside_face(mesh, topology, fan, arms, along)
-   end function is_barred
 
    !> Nodes with F_p >= 1, ascending, and what failed there.
    pure subroutine find_failed(mesh, topology, factor, normal, weights, retry, nodes, failures)

@@ -56,15 +56,18 @@ def test_a_free_body_keeps_its_momentum(cracking, mode, release, damping):
     assert abs(momentum(run) - before).max() < 1e-13 * scale
 
 
+@pytest.mark.parametrize("damping", DAMPING)
 @pytest.mark.parametrize("release", [None, 0])
 @pytest.mark.parametrize("load", ["burst", "pull", "squeeze"])
 @BOTH
-def test_no_event_leaves_a_gap_in_the_ledger(cracking, load, mode, release):
+def test_no_event_leaves_a_gap_in_the_ledger(cracking, load, mode, release, damping):
     """The residual moves no more in steps with cracks than ten times what it moves in others.
 
-    With `pull`, cuts fall on edges between a driven and a free node.
+    With `pull`, cuts fall on edges between a driven and a free node. With damping, driven nodes
+    lie on fragments that have a drag of their own.
     """
-    run = cracking(load, mode).with_fracture(release_steps=release).start()
+    model = cracking(load, mode, damping=DAMPING[damping])
+    run = model.with_fracture(release_steps=release).start()
     run.advance(0)
     moved, cracked, residual, cracks = [], [], 0.0, 0
     while run.step < 500:
@@ -78,7 +81,7 @@ def test_no_event_leaves_a_gap_in_the_ledger(cracking, load, mode, release):
     assert cracked.sum() >= 2
     assert moved[around].max() < 10 * moved[~around].max() < 1e-5
     assert run.energy().relump <= 0.0
-    assert (run.energy().relump < 0.0) == (mode == "intra_element")
+    assert mode == "intra_element" or run.energy().relump == 0.0
 
 
 def test_the_parts_of_a_body_have_its_area(cracking):
@@ -111,14 +114,26 @@ def test_whoever_asks_for_a_cut_element_finds_a_piece(cracking):
             pytest.fail(f"element {element} has no piece of its own")
 
 
-def test_pressure_stays_on_a_side_that_is_cut(cracking):
-    """The force of a follower pressure on a straight side is pressure times its length."""
-    run = cracking("squeeze", "intra_element").start()
+@BOTH
+def test_pressure_stays_on_the_edges_of_its_side(cracking, mode):
+    """Momentum grows by the thrust on all edges of the lower side, however they were cut."""
+    run = cracking("blow", mode).start()
     run.advance(0)
-    before = run.loads()[2]
-    run.advance(600)
-    assert run.sizes().cracks > 10
-    np.testing.assert_allclose(run.loads()[2][0], before[0], rtol=1e-12)
+    before = momentum(run)
+    while run.step < 400:
+        run.advance(1)
+        nodes, triangles, _, alive = run.mesh()
+        positions, thrust, edges = nodes + run.nodes()[0], np.zeros(2), 0
+        for k in range(3):
+            first, second = triangles[alive, k], triangles[alive, (k + 1) % 3]
+            side = (nodes[first, 1] == 0.0) & (nodes[second, 1] == 0.0)
+            edges += side.sum()
+            along = (positions[second[side]] - positions[first[side]]).sum(axis=0)
+            thrust += np.array([-along[1], along[0]])
+        now = momentum(run)
+        np.testing.assert_allclose(now - before, run.dt * thrust, rtol=1e-6, atol=1e-12)
+        before = now
+    assert edges >= 6
 
 
 def test_momentum_of_the_parts_is_that_of_the_nodes(cracking):
