@@ -52,7 +52,7 @@ def test_a_free_body_keeps_its_momentum(cracking, mode, release, damping):
     run.advance(0)
     before, scale = momentum(run), abs(run.nodes()[1].T * run.nodes()[2]).sum()
     run.advance(500)
-    assert run.sizes().cracks > 20
+    assert run.sizes().cracks >= 20
     assert abs(momentum(run) - before).max() < 1e-13 * scale
 
 
