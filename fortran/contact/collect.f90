@@ -1,13 +1,15 @@
 !> Pairs of a step: which candidates may close in it, with all that the solution needs of them.
 !>
 !> Most candidates are far apart, or open by more than any motion of one step: the order of the
-!> questions decides what contact costs.
+!> questions decides what contact costs. Slices of the candidates are looked at in any order, or
+!> at the same time; their pairs are put together in the order of the candidates.
 module lithofrac_contact_collect
    use lithofrac_base_kinds, only: wp
-   use lithofrac_contact_contact, only: contact_type
+   use lithofrac_contact_contact, only: contact_type, corner_of_edge
    use lithofrac_contact_corners, only: no_corner
    use lithofrac_contact_pairs, only: corner_pair, corner_reach, edge_pair, motion_type, &
       pair_type
+   use lithofrac_contact_slices, only: last_of, most_slices
    implicit none
    private
 
@@ -44,86 +46,166 @@ contains
    !> Wedges that stand side by side make a corner. Where something may stand between them, nodes
    !> over edges keep them apart, and a corner only fills the hole exactly above a node. Where
    !> both have somebody on either side, those keep them apart.
-   subroutine collect_pairs(contact, scales, collides, node)
+   subroutine collect_pairs(contact, scales, threaded, collides, node)
       type(contact_type), intent(inout) :: contact
       type(scales_type), intent(in) :: scales
+      logical, intent(in) :: threaded        !! slices are worth threads
       logical, intent(out) :: collides       !! motions that may not yield meet
       integer, intent(out) :: node(2)        !! where, boundary nodes
 
+      integer :: slice
+
+      !$omp taskloop default(shared) grainsize(1) if(threaded)
+      do slice = 1, contact%n_slices
+         call add_neighbours(contact, scales, slice)
+      end do
+      !$omp end taskloop
+      call count_beside(contact)
+      !$omp taskloop default(shared) grainsize(1) if(threaded)
+      do slice = 1, contact%n_slices
+         call add_edges(contact, scales, slice)
+      end do
+      !$omp end taskloop
+      !$omp taskloop default(shared) grainsize(1) if(threaded)
+      do slice = 1, contact%n_slices
+         call add_other_corners(contact, scales, slice)
+      end do
+      !$omp end taskloop
+      slice = findloc(contact%slices(:contact%n_slices)%collision > 0, .true., dim=1)
+      collides = slice > 0
+      node = 1
+      if (collides) node = contact%pairs(contact%slices(slice)%collision)%node(:2)
+      call order_pairs(contact)
+   end subroutine collect_pairs
+
+   !> Corners of wedges that stand side by side.
+   pure subroutine add_neighbours(contact, scales, slice)
+      type(contact_type), intent(inout) :: contact
+      type(scales_type), intent(in) :: scales
+      integer, intent(in) :: slice
+
+      integer :: first, last, i
+
+      first = last_of(size(contact%kind), slice - 1, contact%n_slices) + 1
+      last = last_of(size(contact%kind), slice, contact%n_slices)
+      contact%keeper(first:last) = nobody
+      associate (found => contact%slices(slice))
+         found%collision = 0
+         found%fastest = 0.0_wp
+         found%deepest = 0.0_wp
+         found%first(1) = first + slice - 1
+         found%last(1) = first + slice - 2
+         do i = first, last
+            if (contact%kind(i) == no_corner .or. .not. contact%neighbours(i)) cycle
+            call add_corner(contact, scales, i, slice, 1)
+            if (found%collision > 0) exit
+         end do
+      end associate
+   end subroutine add_neighbours
+
+   !> How many of these corners every node has.
+   pure subroutine count_beside(contact)
+      type(contact_type), intent(inout) :: contact
+
       integer :: i
 
-      collides = .false.
-      contact%n_pairs = 0
-      contact%keeper = nobody
       contact%beside = 0
       do i = 1, size(contact%kind)
-         if (contact%kind(i) == no_corner .or. .not. contact%neighbours(i)) cycle
-         call add_corner(contact, scales, i, collides)
-         if (collides) exit
          if (contact%keeper(i) == nobody) cycle
          associate (a => contact%candidates%corner(1, i), b => contact%candidates%corner(2, i))
             contact%beside(a) = contact%beside(a) + 1
             contact%beside(b) = contact%beside(b) + 1
          end associate
       end do
-      if (.not. collides) call add_edges(contact, scales, collides)
-      do i = 1, size(contact%kind)
-         if (collides) exit
-         if (contact%kind(i) == no_corner .or. contact%neighbours(i) &
-            .or. contact%keeper(i) /= nobody) cycle
-         if (min(contact%beside(contact%candidates%corner(1, i)), &
-            contact%beside(contact%candidates%corner(2, i))) > 1) cycle
-         call add_corner(contact, scales, i, collides)
-      end do
-      node = 1
-      if (collides) node = contact%pairs(contact%n_pairs + 1)%node(:2)
-   end subroutine collect_pairs
+   end subroutine count_beside
 
    !> Nodes over edges, except where the node makes a corner with an end of the edge.
-   subroutine add_edges(contact, scales, collides)
+   subroutine add_edges(contact, scales, slice)
       type(contact_type), intent(inout) :: contact
       type(scales_type), intent(in) :: scales
-      logical, intent(inout) :: collides
+      integer, intent(in) :: slice
 
-      integer :: i, k, m
+      integer :: i, k, m, start, last
       real(wp) :: gap(2)
 
       gap = 0.0_wp
-      associate (list => contact%candidates, keeper => contact%keeper)
-         do k = 0, size(contact%kind)
+      associate (list => contact%candidates, keeper => contact%keeper, &
+            found => contact%slices(slice))
+         start = last_of(size(contact%edge_order), slice - 1, contact%n_slices) + 1
+         last = last_of(size(contact%edge_order), slice, contact%n_slices)
+         found%first(2) = size(contact%kind) + most_slices + start + slice - 1
+         found%last(2) = found%first(2) - 1
+         if (last < start) return
+         do k = corner_of_edge(list, contact%edge_order(start)), size(contact%kind)
+            if (contact%first_edge(k) > last) return
             if (keeper(k) == corner) cycle
-            do m = contact%first_edge(k), contact%first_edge(k + 1) - 1
+            do m = max(start, contact%first_edge(k)), min(last, contact%first_edge(k + 1) - 1)
                i = contact%edge_order(m)
                associate (one => list%corner_at(1, i), other => list%corner_at(2, i))
                   if (keeper(one) == corner .or. keeper(other) == corner) cycle
-                  associate (pair => contact%pairs(contact%n_pairs + 1))
+                  associate (pair => contact%pairs(found%last(2) + 1))
                      call edge_pair(contact%surfaces, list%edge(1, i), list%edge(2, i), pair, &
                         gap(1))
                      if (pair%n_faces == 0) cycle
                   end associate
-                  keeper(one) = edge
-                  keeper(other) = edge
+                  call keep_by_edge(keeper, one)
+                  call keep_by_edge(keeper, other)
                end associate
                call count_in(contact, scales, -i, contact%edge_friction(i), &
-                  contact%edge_impulse(:, i), gap, collides)
-               if (collides) return
+                  contact%edge_impulse(:, i), gap, slice, 2)
+               if (found%collision > 0) return
             end do
          end do
       end associate
    end subroutine add_edges
 
+   !> Pairs of several slices may say so of one corner.
+   subroutine keep_by_edge(keeper, i)
+      integer, intent(inout) :: keeper(0:)
+      integer, intent(in) :: i                !! corner; 0 for none
+
+      if (i == 0) return
+      !$omp atomic write
+      keeper(i) = edge
+   end subroutine keep_by_edge
+
+   !> Corners that nobody keeps apart yet.
+   pure subroutine add_other_corners(contact, scales, slice)
+      type(contact_type), intent(inout) :: contact
+      type(scales_type), intent(in) :: scales
+      integer, intent(in) :: slice
+
+      integer :: i
+
+      associate (found => contact%slices(slice))
+         found%first(3) = found%last(1) + 1
+         found%last(3) = found%last(1)
+         do i = last_of(size(contact%kind), slice - 1, contact%n_slices) + 1, &
+            last_of(size(contact%kind), slice, contact%n_slices)
+            if (found%collision > 0) exit
+            if (contact%kind(i) == no_corner .or. contact%neighbours(i) &
+               .or. contact%keeper(i) /= nobody) cycle
+            if (min(contact%beside(contact%candidates%corner(1, i)), &
+               contact%beside(contact%candidates%corner(2, i))) > 1) cycle
+            call add_corner(contact, scales, i, slice, 3)
+         end do
+      end associate
+   end subroutine add_other_corners
+
    !> The pair of corner `i`, if its nodes are at one place.
-   subroutine add_corner(contact, scales, i, collides)
+   pure subroutine add_corner(contact, scales, i, slice, pass)
       type(contact_type), intent(inout) :: contact
       type(scales_type), intent(in) :: scales
       integer, intent(in) :: i
-      logical, intent(inout) :: collides
+      integer, intent(in) :: slice
+      integer, intent(in) :: pass
 
       real(wp) :: arm(2), d(2), gap(2)
       integer :: k
 
       associate (a => contact%candidates%corner(1, i), b => contact%candidates%corner(2, i), &
-            surfaces => contact%surfaces, pair => contact%pairs(contact%n_pairs + 1))
+            surfaces => contact%surfaces, &
+            pair => contact%pairs(contact%slices(slice)%last(pass) + 1))
          do k = 1, 2
             arm(k) = (surfaces%reference(k, a) - surfaces%reference(k, b)) &
                + (surfaces%u(k, a) - surfaces%u(k, b))
@@ -142,36 +224,85 @@ contains
          if (pair%n_faces == 0) return
       end associate
       call count_in(contact, scales, i, contact%corner_friction(i), contact%corner_impulse(:, i), &
-         gap, collides)
+         gap, slice, pass)
    end subroutine add_corner
 
-   !> Complete the pair that stands behind those of the step, and count it in unless it is open.
-   subroutine count_in(contact, scales, candidate, friction, impulse, gap, collides)
+   !> Complete the pair that stands behind those of the pass, and count it in unless it is open.
+   pure subroutine count_in(contact, scales, candidate, friction, impulse, gap, slice, pass)
       type(contact_type), intent(inout) :: contact
       type(scales_type), intent(in) :: scales
       integer, intent(in) :: candidate       !! corner when positive, node and edge when negative
       real(wp), intent(in) :: friction
       real(wp), intent(in) :: impulse(2)     !! normal and tangential, of the step before [N s]
       real(wp), intent(in) :: gap(2)         !! [m]
-      logical, intent(inout) :: collides
+      integer, intent(in) :: slice
+      integer, intent(in) :: pass
 
       real(wp) :: least, d(2)
+      logical :: collides
 
-      associate (pair => contact%pairs(contact%n_pairs + 1))
-         least = gap(1)
-         if (pair%n_faces == 2) least = min(least, gap(2))
-         if (least > max(open_gap*scales%h, open_steps*scales%dt*scales%speed)) return
-         pair%candidate = candidate
-         pair%friction = friction
-         call complete_pair(pair, scales, contact%motion, gap, d, collides)
-         if (collides .or. pair%n_faces == 0) return
-         pair%impulse(1) = impulse(1)*pair%normal(1, 1) - impulse(2)*pair%normal(2, 1)
-         pair%impulse(2) = impulse(1)*pair%normal(2, 1) + impulse(2)*pair%normal(1, 1)
-         contact%fastest = max(contact%fastest, abs(d(1)), abs(d(2)))
-         contact%deepest = max(contact%deepest, -least)
+      associate (found => contact%slices(slice))
+         associate (pair => contact%pairs(found%last(pass) + 1))
+            least = gap(1)
+            if (pair%n_faces == 2) least = min(least, gap(2))
+            if (least > max(open_gap*scales%h, open_steps*scales%dt*scales%speed)) return
+            pair%candidate = candidate
+            pair%friction = friction
+            call complete_pair(pair, scales, contact%motion, gap, d, collides)
+            if (collides) found%collision = found%last(pass) + 1
+            if (collides .or. pair%n_faces == 0) return
+            pair%impulse(1) = impulse(1)*pair%normal(1, 1) - impulse(2)*pair%normal(2, 1)
+            pair%impulse(2) = impulse(1)*pair%normal(2, 1) + impulse(2)*pair%normal(1, 1)
+            if (contact%n_groups > 1) contact%pair_group(found%last(pass) + 1) &
+               = contact%group_of(pair%node(1))
+         end associate
+         found%fastest = max(found%fastest, abs(d(1)), abs(d(2)))
+         found%deepest = max(found%deepest, -least)
+         found%last(pass) = found%last(pass) + 1
       end associate
-      contact%n_pairs = contact%n_pairs + 1
    end subroutine count_in
+
+   !> Order of the pairs: by group of islands, in each as the candidates.
+   pure subroutine order_pairs(contact)
+      type(contact_type), intent(inout) :: contact
+
+      integer :: place(contact%n_groups), group, i, pass, slice
+
+      contact%groups%last = 0
+      associate (slices => contact%slices, groups => contact%groups)
+         do slice = 1, contact%n_slices
+            do pass = 1, 3
+               if (contact%n_groups == 1) then
+                  groups(1)%last = groups(1)%last + slices(slice)%last(pass) &
+                     - slices(slice)%first(pass) + 1
+                  cycle
+               end if
+               do i = slices(slice)%first(pass), slices(slice)%last(pass)
+                  associate (last => groups(contact%pair_group(i))%last)
+                     last = last + 1
+                  end associate
+               end do
+            end do
+         end do
+         contact%n_pairs = 0
+         do group = 1, contact%n_groups
+            groups(group)%first = contact%n_pairs + 1
+            place(group) = groups(group)%first
+            contact%n_pairs = contact%n_pairs + groups(group)%last
+            groups(group)%last = contact%n_pairs
+         end do
+         group = 1
+         do pass = 1, 3
+            do slice = 1, contact%n_slices
+               do i = slices(slice)%first(pass), slices(slice)%last(pass)
+                  if (contact%n_groups > 1) group = contact%pair_group(i)
+                  contact%order(place(group)) = i
+                  place(group) = place(group) + 1
+               end do
+            end do
+         end do
+      end associate
+   end subroutine order_pairs
 
    !> Stiffness of a pair and where it comes to rest; faces along which nothing can yield go.
    pure subroutine complete_pair(pair, scales, motion, gap, d, collides)
@@ -180,11 +311,12 @@ contains
       type(motion_type), intent(in), contiguous :: motion(:)
       real(wp), intent(in) :: gap(2)       !! [m]
       real(wp), intent(out) :: d(2)        !! predicted relative velocity [m/s]
-      logical, intent(inout) :: collides   !! motions that may not yield meet
+      logical, intent(out) :: collides     !! motions that may not yield meet
 
       real(wp) :: w(2), bias(2), largest
       integer :: k, face
 
+      collides = .false.
       d = 0.0_wp
       w = 0.0_wp
       do k = 1, pair%n_nodes

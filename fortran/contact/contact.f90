@@ -5,16 +5,18 @@ module lithofrac_contact_contact
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: bad_input, ok, set_failure, status_type
    use lithofrac_contact_corners, only: classify
+   use lithofrac_contact_islands, only: find_islands, group_islands
    use lithofrac_contact_multipliers, only: queue_type
    use lithofrac_contact_pairs, only: motion_type, pair_type
    use lithofrac_contact_search, only: candidates_type, list_candidates
+   use lithofrac_contact_slices, only: group_type, most_groups, most_slices, slice_type
    use lithofrac_contact_surfaces, only: new_surfaces, surfaces_type
    use lithofrac_mesh_mesh, only: mesh_type
    implicit none
    private
 
-   public :: contact_type, new_contact, prepare_list, renew_list, resize_motion, statistics_type
-   public :: turn_corners
+   public :: contact_type, corner_of_edge, find_groups, has_turned, new_contact, prepare_list
+   public :: renew_list, resize_motion, statistics_type, turn_corners
 
    real(wp), parameter :: rotated = 1.0e-6_wp      !! squared turn that asks for new corners [rad2]
 
@@ -47,8 +49,16 @@ module lithofrac_contact_contact
       real(wp), allocatable :: tangent(:, :)       !! (2, n) edges when corners were classified
       real(wp), allocatable :: corner_impulse(:, :)  !! (2, n_corners) normal, tangential [N s]
       real(wp), allocatable :: edge_impulse(:, :)  !! (2, n_edges)
-      type(pair_type), allocatable :: pairs(:)     !! room for every candidate
+      type(pair_type), allocatable :: pairs(:)     !! room for every candidate, and one a slice
+      real(wp), allocatable :: work(:, :)          !! (4, pairs) normal, friction; then after [J]
+      integer, allocatable :: order(:)             !! pairs of the step, group by group
+      integer, allocatable :: pair_group(:)        !! group of islands of each pair
       integer :: n_pairs = 0
+      integer, allocatable :: group_of(:)          !! (n) group of islands of a node
+      integer :: n_slices = 1                      !! of this step
+      type(slice_type) :: slices(most_slices)
+      integer :: n_groups = 0                      !! 0: islands of the list are not known yet
+      type(group_type) :: groups(most_groups)
       integer, allocatable :: first_edge(:)        !! (0:n_corners + 1) into `edge_order`
       integer, allocatable :: edge_order(:)        !! node-edge pairs by their corner, 0 for none
       integer, allocatable :: keeper(:)            !! (0:n_corners) who keeps the two nodes apart
@@ -60,8 +70,6 @@ module lithofrac_contact_contact
       integer, allocatable :: loaded(:)            !! their candidates
       real(wp) :: work_before(2) = 0.0_wp          !! normal, friction: half step before [J]
       real(wp) :: work_after(2) = 0.0_wp           !! and after [J]
-      real(wp) :: fastest = 0.0_wp                 !! relative velocity of a pair in this step [m/s]
-      real(wp) :: deepest = 0.0_wp                 !! penetration of a pair in this step [m]
       type(statistics_type) :: statistics
    end type contact_type
 
@@ -130,13 +138,14 @@ contains
    subroutine prepare_list(contact)
       type(contact_type), intent(inout) :: contact
 
-      integer :: n_corners, n_edges, i
+      integer :: n_corners, n_edges, n_all, i
 
       call list_candidates(contact%candidates, contact%surfaces)
       n_corners = size(contact%candidates%corner, 2)
       n_edges = size(contact%candidates%edge, 2)
       if (allocated(contact%kind)) then
-         deallocate (contact%kind, contact%face, contact%pairs)
+         deallocate (contact%kind, contact%face, contact%pairs, contact%work, contact%order, &
+            contact%pair_group)
          deallocate (contact%neighbours, contact%corner_friction, contact%edge_friction)
          deallocate (contact%keeper, contact%first_edge, contact%queue%next, contact%queue%now, &
             contact%queue%older, contact%loaded)
@@ -144,10 +153,12 @@ contains
       allocate (contact%kind(n_corners), contact%face(2, n_corners))
       allocate (contact%neighbours(n_corners))
       allocate (contact%corner_friction(n_corners), contact%edge_friction(n_edges))
-      allocate (contact%pairs(n_corners + n_edges + 1))
-      allocate (contact%queue%next(n_corners + n_edges), contact%queue%now(n_corners + n_edges))
-      allocate (contact%queue%older(4, n_corners + n_edges), contact%loaded(n_corners + n_edges))
+      n_all = n_corners + n_edges + 2*most_slices
+      allocate (contact%pairs(n_all), contact%work(4, n_all), contact%queue%older(4, n_all))
+      allocate (contact%queue%next(n_all), contact%queue%now(n_all), contact%order(n_all))
+      allocate (contact%loaded(n_all), contact%pair_group(n_all))
       allocate (contact%keeper(0:n_corners), contact%first_edge(0:n_corners + 1))
+      contact%keeper = 0
       contact%corner_impulse = spread([0.0_wp, 0.0_wp], 2, n_corners)
       contact%edge_impulse = spread([0.0_wp, 0.0_wp], 2, n_edges)
       associate (list => contact%candidates, prev => contact%surfaces%prev)
@@ -163,8 +174,34 @@ contains
       end associate
       call order_edges(contact)
       call find_near(contact)
+      contact%n_groups = 0
       contact%n_loaded = -1
    end subroutine prepare_list
+
+   !> Groups of islands that are solved at the same time. No bit depends on their number.
+   subroutine find_groups(contact, n_groups)
+      type(contact_type), intent(inout) :: contact
+      integer, intent(in) :: n_groups
+
+      integer, allocatable :: island(:), weight(:)
+      integer :: i
+
+      allocate (island(contact%surfaces%n), weight(contact%surfaces%n))
+      weight = 0
+      associate (list => contact%candidates)
+         call find_islands(contact%surfaces, list, island)
+         do i = 1, size(list%corner, 2)
+            weight(list%corner(1, i)) = weight(list%corner(1, i)) + 1
+         end do
+         do i = 1, size(list%edge, 2)
+            weight(list%edge(1, i)) = weight(list%edge(1, i)) + 1
+         end do
+      end associate
+      if (allocated(contact%group_of)) deallocate (contact%group_of)
+      allocate (contact%group_of(contact%surfaces%n))
+      contact%n_groups = n_groups
+      call group_islands(island, weight, n_groups, contact%group_of)
+   end subroutine find_groups
 
    !> Sort the node-edge pairs by a corner that the node makes with an end of the edge: while that
    !> corner has a pair nobody needs to look at them.
@@ -173,10 +210,10 @@ contains
 
       integer :: place(0:size(contact%kind)), i, corner
 
-      associate (corner_at => contact%candidates%corner_at, first => contact%first_edge)
+      associate (list => contact%candidates, first => contact%first_edge)
          first = 0
-         do i = 1, size(corner_at, 2)
-            corner = corner_at(merge(1, 2, corner_at(1, i) > 0), i)
+         do i = 1, size(list%edge, 2)
+            corner = corner_of_edge(list, i)
             first(corner + 1) = first(corner + 1) + 1
          end do
          first(0) = 1
@@ -185,14 +222,23 @@ contains
             first(corner + 1) = first(corner + 1) + first(corner)
          end do
          if (allocated(contact%edge_order)) deallocate (contact%edge_order)
-         allocate (contact%edge_order(size(corner_at, 2)))
-         do i = 1, size(corner_at, 2)
-            corner = corner_at(merge(1, 2, corner_at(1, i) > 0), i)
+         allocate (contact%edge_order(size(list%edge, 2)))
+         do i = 1, size(list%edge, 2)
+            corner = corner_of_edge(list, i)
             contact%edge_order(place(corner)) = i
             place(corner) = place(corner) + 1
          end do
       end associate
    end subroutine order_edges
+
+   !> The corner by which a node-edge pair is sorted; 0 for none.
+   pure function corner_of_edge(list, i) result(corner)
+      type(candidates_type), intent(in) :: list
+      integer, intent(in) :: i
+      integer :: corner
+
+      corner = list%corner_at(merge(1, 2, list%corner_at(1, i) > 0), i)
+   end function corner_of_edge
 
    !> Boundary nodes that a pair of the list may move, and edges that it may look at, ascending.
    pure subroutine find_near(contact)
@@ -257,7 +303,6 @@ contains
       logical :: turned(contact%surfaces%n)
       integer :: i, k
 
-      if (.not. has_turned(contact)) return
       turned = .false.
       associate (t => contact%surfaces%tangent, old => contact%tangent)
          do k = 1, size(contact%near)
@@ -277,16 +322,18 @@ contains
       end associate
    end subroutine turn_corners
 
-   pure function has_turned(contact)
+   !> Has one of these edges turned since corners were classified?
+   pure function has_turned(contact, edge)
       type(contact_type), intent(in) :: contact
+      integer, intent(in), contiguous :: edge(:)
       logical :: has_turned
 
       integer :: i, k
 
       has_turned = .true.
       associate (t => contact%surfaces%tangent, old => contact%tangent)
-         do k = 1, size(contact%near)
-            i = contact%near(k)
+         do k = 1, size(edge)
+            i = edge(k)
             if (turn_of(t(1, i), t(2, i), old(1, i), old(2, i)) > rotated) return
          end do
       end associate

@@ -2,7 +2,8 @@
 !>
 !> Starts from the impulses of the step before. The first sweep solves every pair, each later one
 !> only those whose nodes another pair has moved since, in the opposite direction to the sweep
-!> before. The order of the pairs alone decides the bits of the result.
+!> before. Islands that share no node can be solved at the same time: the order of the
+!> pairs within each alone decides the bits of the result.
 module lithofrac_contact_multipliers
    use lithofrac_base_kinds, only: wp
    use lithofrac_contact_friction, only: one_face, two_faces
@@ -20,15 +21,18 @@ module lithofrac_contact_multipliers
    type :: queue_type
       integer, allocatable :: newest(:)   !! (n) 4*pair + place, last pair of a boundary node
       integer, allocatable :: older(:, :) !! (4, pairs) the same for the pair before, by place
-      integer, allocatable :: next(:)     !! pairs of the sweep to come
+      integer, allocatable :: next(:)     !! pairs of the sweep to come, in the part of the group
       integer, allocatable :: now(:)      !! pairs of this sweep
    end type queue_type
 
 contains
 
-   !> Find the impulses; velocities come out with them.
-   pure subroutine solve_pairs(pairs, motion, tolerance, most_sweeps, queue, sweeps, converged)
+   !> Find the impulses of a group of islands; velocities come out with them.
+   pure subroutine solve_pairs(pairs, order, first, last, motion, tolerance, most_sweeps, queue, &
+      sweeps, converged)
       type(pair_type), intent(inout), contiguous :: pairs(:)  !! `impulse` a guess, the solution
+      integer, intent(in), contiguous :: order(:)
+      integer, intent(in) :: first, last            !! of the group, into `order`
       type(motion_type), intent(inout), contiguous :: motion(:)  !! (n)
       real(wp), intent(in) :: tolerance             !! change of a relative velocity [m/s]
       integer, intent(in) :: most_sweeps
@@ -36,34 +40,37 @@ contains
       integer, intent(out) :: sweeps
       logical, intent(out) :: converged
 
-      integer :: i, k, first, last
+      integer :: i, k, n, queued
       real(wp) :: enough
 
-      do i = 1, size(pairs)
+      do k = first, last
+         i = order(k)
          call link_pair(pairs(i), i, queue)
          call add_impulse(pairs(i), pairs(i)%impulse(1), pairs(i)%impulse(2), motion)
       end do
-      last = 0
-      do i = 1, size(pairs)
-         call visit_pair(pairs, i, i - 1, motion, tolerance, queue, last)
+      queued = 0
+      do k = first, last
+         i = order(k)
+         pairs(i)%is_queued = .false.
+         call visit_pair(pairs, i, motion, tolerance, queue, first, queued)
       end do
       do sweeps = 1, most_sweeps - 1
-         converged = last == 0
+         converged = queued == 0
          if (converged) return
-         first = last
+         n = queued
          enough = merge(tolerance, late*tolerance, sweeps <= early_sweeps)
-         queue%now(:last) = queue%next(:last)
-         last = 0
-         do k = first, 1, -1
+         queue%now(first:first + n - 1) = queue%next(first:first + n - 1)
+         queued = 0
+         do k = first + n - 1, first, -1
             i = queue%now(k)
             pairs(i)%is_queued = .false.
-            call visit_pair(pairs, i, size(pairs), motion, enough, queue, last)
+            call visit_pair(pairs, i, motion, enough, queue, first, queued)
          end do
       end do
-      converged = last == 0
+      converged = queued == 0
    end subroutine solve_pairs
 
-   !> Chain the pairs of every node, newest first.
+   !> Chain the pairs of every node, newest first; all wait for the first sweep.
    pure subroutine link_pair(pair, number, queue)
       type(pair_type), intent(inout) :: pair
       integer, intent(in) :: number
@@ -71,7 +78,7 @@ contains
 
       integer :: k
 
-      pair%is_queued = .false.
+      pair%is_queued = .true.
       do k = 1, pair%n_nodes
          queue%older(k, number) = queue%newest(pair%node(k))
          queue%newest(pair%node(k)) = 4*number + k - 1
@@ -79,14 +86,14 @@ contains
    end subroutine link_pair
 
    !> Solve pair `i`; queue the pairs that feel it.
-   pure subroutine visit_pair(pairs, i, last_pair, motion, tolerance, queue, n)
+   pure subroutine visit_pair(pairs, i, motion, tolerance, queue, first, n)
       type(pair_type), intent(inout), contiguous :: pairs(:)
       integer, intent(in) :: i
-      integer, intent(in) :: last_pair      !! those behind it are still to be visited
       type(motion_type), intent(inout), contiguous :: motion(:)
       real(wp), intent(in) :: tolerance     !! change of a relative velocity [m/s]
       type(queue_type), intent(inout) :: queue
-      integer, intent(inout) :: n           !! pairs in the queue
+      integer, intent(in) :: first          !! place of the group in the queue
+      integer, intent(inout) :: n           !! its pairs in the queue
 
       real(wp) :: p(2), x, y, dv
       integer :: k
@@ -103,20 +110,20 @@ contains
             associate (at => motion(pair%node(k)))
                dv = abs(pair%weight(k))*max(abs(x)*at%inverse_mass(1), abs(y)*at%inverse_mass(2))
             end associate
-            if (dv > share*tolerance) call wake(pairs, i, last_pair, queue%newest(pair%node(k)), &
-               share*tolerance/dv, queue, n)
+            if (dv > share*tolerance) call wake(pairs, i, queue%newest(pair%node(k)), &
+               share*tolerance/dv, queue, first, n)
          end do
       end associate
    end subroutine visit_pair
 
    !> Queue the other pairs of a node that has moved, unless they have little weight there.
-   pure subroutine wake(pairs, i, last_pair, newest, least, queue, n)
+   pure subroutine wake(pairs, i, newest, least, queue, first, n)
       type(pair_type), intent(inout), contiguous :: pairs(:)
       integer, intent(in) :: i
-      integer, intent(in) :: last_pair
       integer, intent(in) :: newest         !! 4*pair + place, of the node
       real(wp), intent(in) :: least         !! weight that counts
       type(queue_type), intent(inout) :: queue
+      integer, intent(in) :: first
       integer, intent(inout) :: n
 
       integer :: entry, other, place
@@ -126,11 +133,11 @@ contains
          other = entry/4
          place = modulo(entry, 4) + 1
          entry = queue%older(place, other)
-         if (other > last_pair .or. other == i .or. pairs(other)%is_queued) cycle
+         if (other == i .or. pairs(other)%is_queued) cycle
          if (abs(pairs(other)%weight(place)) <= least) cycle
          pairs(other)%is_queued = .true.
+         queue%next(first + n) = other
          n = n + 1
-         queue%next(n) = other
       end do
    end subroutine wake
 

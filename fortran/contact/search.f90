@@ -9,7 +9,7 @@ module lithofrac_contact_search
    implicit none
    private
 
-   public :: candidates_type, list_candidates, list_is_stale
+   public :: candidates_type, has_moved, list_candidates
 
    real(wp), parameter :: skin = 0.3_wp         !! over the shortest edge
    real(wp), parameter :: allowed_motion = 0.2_wp  !! of the skin
@@ -32,24 +32,25 @@ module lithofrac_contact_search
 
 contains
 
-   !> Has a node moved too far for the list?
-   pure function list_is_stale(candidates, surfaces) result(stale)
+   !> Has one of these nodes moved too far for the list?
+   pure function has_moved(candidates, surfaces, first, last) result(moved)
       type(candidates_type), intent(in) :: candidates
       type(surfaces_type), intent(in) :: surfaces
-      logical :: stale
+      integer, intent(in) :: first
+      integer, intent(in) :: last
+      logical :: moved
 
-      real(wp) :: moved, limit
+      real(wp) :: way, limit
       integer :: i
 
-      stale = .not. candidates%listed
-      if (stale) return
+      moved = .false.
       limit = (allowed_motion*skin*surfaces%h)**2
-      do i = 1, surfaces%n
-         moved = (surfaces%u(1, i) - candidates%u(1, i))**2 &
+      do i = first, last
+         way = (surfaces%u(1, i) - candidates%u(1, i))**2 &
             + (surfaces%u(2, i) - candidates%u(2, i))**2
-         if (.not. moved <= limit) stale = .true.
+         if (.not. way <= limit) moved = .true.
       end do
-   end function list_is_stale
+   end function has_moved
 
    !> List the pairs within the skin of the positions of now.
    subroutine list_candidates(candidates, surfaces)

@@ -6,15 +6,14 @@
 module lithofrac_contact_solve
    use lithofrac_base_kinds, only: wp
    use lithofrac_contact_collect, only: collect_pairs, scales_type
-   use lithofrac_contact_contact, only: contact_type, renew_list, statistics_type, turn_corners
+   use lithofrac_contact_contact, only: contact_type, renew_list, statistics_type
    use lithofrac_contact_multipliers, only: solve_pairs
    use lithofrac_contact_pairs, only: pair_type
-   use lithofrac_contact_search, only: list_is_stale
-   use lithofrac_contact_surfaces, only: update_edges, update_shape
+   use lithofrac_contact_surfaces, only: update_shape
    implicit none
    private
 
-   public :: follow_motion, solve_contact
+   public :: renew, solve_contact
    public :: solved, prescribed_collision, too_fast, lost
 
    ! Outcomes of a step.
@@ -34,75 +33,117 @@ module lithofrac_contact_solve
 
 contains
 
-   !> Bring the list of candidates and all that follows from `surfaces%u` up to date.
-   subroutine follow_motion(contact, renewed, code)
+   !> A new list of candidates for the positions of now.
+   subroutine renew(contact, code)
       type(contact_type), intent(inout) :: contact
-      logical, intent(out) :: renewed          !! the list is a new one
       integer, intent(out) :: code
 
       code = solved
-      renewed = list_is_stale(contact%candidates, contact%surfaces)
-      if (renewed) then
-         call update_shape(contact%surfaces)
-         if (.not. all(abs(contact%surfaces%tangent) <= 1.5_wp)) then
-            code = lost
-            return
-         end if
+      call update_shape(contact%surfaces)
+      if (all(abs(contact%surfaces%tangent) <= 1.5_wp)) then
          call renew_list(contact)
       else
-         call update_edges(contact%surfaces, contact%near)
+         code = lost
       end if
-      call turn_corners(contact)
-   end subroutine follow_motion
+   end subroutine renew
 
    !> Impulses of one step; `contact%motion` holds the velocities without contact, then with it.
-   subroutine solve_contact(contact, dt, critical, code, node)
+   subroutine solve_contact(contact, dt, critical, threaded, code, node)
       type(contact_type), intent(inout) :: contact
       real(wp), intent(in) :: dt               !! [s]
       real(wp), intent(in) :: critical         !! largest stable step [s]
+      logical, intent(in) :: threaded          !! the work is worth threads
       integer, intent(out) :: code
       integer, intent(out) :: node(2)          !! boundary nodes that failed
 
-      integer :: i, sweeps
-      logical :: converged, collides
-      real(wp) :: speed
+      integer :: group, most_sweeps
+      logical :: collides
+      real(wp) :: deepest, tolerance
 
       code = solved
       contact%work_before = 0.0_wp
       contact%work_after = 0.0_wp
-      contact%fastest = 0.0_wp
-      contact%deepest = 0.0_wp
-      speed = 0.0_wp
-      do i = 1, size(contact%near)
-         associate (at => contact%motion(contact%near(i)))
-            speed = max(speed, at%v(1)**2 + at%v(2)**2)
-         end associate
-         contact%queue%newest(contact%near(i)) = 0
-      end do
-      call collect_pairs(contact, scales_type(contact%surfaces%h, dt, critical, sqrt(speed)), &
-         collides, node)
+      call collect_pairs(contact, scales_type(contact%surfaces%h, dt, critical, &
+         sqrt(maxval(contact%slices(:contact%n_slices)%speed))), threaded, collides, node)
       if (collides) code = prescribed_collision
       call forget_impulses(contact)
       if (collides .or. contact%n_pairs == 0) return
-      associate (pairs => contact%pairs(:contact%n_pairs), h => contact%surfaces%h)
-         call solve_pairs(pairs, contact%motion, max(accuracy*contact%fastest, fine*h/dt), &
-            merge(many_sweeps, usual_sweeps, contact%deepest > deep*h), contact%queue, sweeps, &
-            converged)
-         contact%fastest = 0.0_wp
-         do i = 1, contact%n_pairs
-            call book_pair(contact, pairs(i))
-            if (contact%fastest*dt <= longest_way*h) cycle
-            code = too_fast
-            node = pairs(i)%node(:2)
-            return
+      associate (h => contact%surfaces%h, groups => contact%groups(:contact%n_groups))
+         deepest = maxval(contact%slices(:contact%n_slices)%deepest)
+         tolerance = max(accuracy*maxval(contact%slices(:contact%n_slices)%fastest), fine*h/dt)
+         most_sweeps = merge(many_sweeps, usual_sweeps, deepest > deep*h)
+         !$omp taskloop default(shared) grainsize(1) if(threaded)
+         do group = 1, contact%n_groups
+            call solve_group(contact, group, tolerance, most_sweeps, longest_way*h/dt)
          end do
-         do i = 1, contact%n_pairs
-            call loosen_jam(contact, pairs(i))
+         !$omp end taskloop
+         group = findloc(groups%too_fast > 0, .true., dim=1)
+         if (group > 0) then
+            code = too_fast
+            node = contact%pairs(groups(group)%too_fast)%node(:2)
+            return
+         end if
+         call sum_work(contact)
+         call count_step(contact%statistics, contact%n_pairs, maxval(groups%sweeps), &
+            all(groups%converged), deepest/h)
+      end associate
+   end subroutine solve_contact
+
+   !> Solve a group of islands and book what it does.
+   pure subroutine solve_group(contact, number, tolerance, most_sweeps, limit)
+      type(contact_type), intent(inout) :: contact
+      integer, intent(in) :: number
+      real(wp), intent(in) :: tolerance         !! change of a relative velocity [m/s]
+      integer, intent(in) :: most_sweeps
+      real(wp), intent(in) :: limit             !! of a relative velocity [m/s]
+
+      real(wp) :: fastest, work(4)
+      integer :: i
+
+      associate (group => contact%groups(number))
+         group%sweeps = 0
+         group%converged = .true.
+         group%too_fast = 0
+         group%work = 0.0_wp
+         if (group%last < group%first) return
+         call solve_pairs(contact%pairs, contact%order, group%first, group%last, contact%motion, &
+            tolerance, most_sweeps, contact%queue, group%sweeps, group%converged)
+         do i = group%first, group%last
+            call book_pair(contact, contact%pairs(contact%order(i)), work, fastest)
+            if (contact%n_groups > 1) then
+               contact%work(:, contact%order(i)) = work
+            else
+               group%work = group%work + work
+            end if
+            contact%loaded(i) = contact%pairs(contact%order(i))%candidate
+            if (.not. fastest > limit .or. group%too_fast > 0) cycle
+            group%too_fast = contact%order(i)
+         end do
+         do i = group%first, group%last
+            call loosen_jam(contact, contact%pairs(contact%order(i)))
          end do
       end associate
-      call count_step(contact%statistics, contact%n_pairs, sweeps, converged, &
-         contact%deepest/contact%surfaces%h)
-   end subroutine solve_contact
+   end subroutine solve_group
+
+   !> Work of all pairs, always added in the same order; a single group has done so.
+   pure subroutine sum_work(contact)
+      type(contact_type), intent(inout) :: contact
+
+      real(wp) :: work(4)
+      integer :: i, pass, slice
+
+      work = contact%groups(1)%work
+      do pass = 1, merge(3, 0, contact%n_groups > 1)
+         do slice = 1, contact%n_slices
+            do i = contact%slices(slice)%first(pass), contact%slices(slice)%last(pass)
+               work = work + contact%work(:, i)
+            end do
+         end do
+      end do
+      contact%work_before = work(:2)
+      contact%work_after = work(3:)
+      contact%n_loaded = contact%n_pairs
+   end subroutine sum_work
 
    !> Clear the impulses of the step before.
    pure subroutine forget_impulses(contact)
@@ -127,9 +168,11 @@ contains
    end subroutine forget_impulses
 
    !> Remember an impulse for the next step; book its work and its share on the nodes.
-   pure subroutine book_pair(contact, pair)
+   pure subroutine book_pair(contact, pair, work, fastest)
       type(contact_type), intent(inout) :: contact
       type(pair_type), intent(in) :: pair
+      real(wp), intent(out) :: work(4)   !! normal, friction: half step before; then after [J]
+      real(wp), intent(out) :: fastest   !! relative velocity that is left [m/s]
 
       real(wp) :: p(2), before(2), after(2), pressure(2)
       integer :: k
@@ -147,16 +190,18 @@ contains
             at%impulse(2) = at%impulse(2) + weight*pair%impulse(2)
          end associate
       end do
-      contact%fastest = max(contact%fastest, abs(after(1)), abs(after(2)))
+      fastest = max(abs(after(1)), abs(after(2)))
+      work = 0.0_wp
       p = pair%impulse
       if (.not. max(abs(p(1)), abs(p(2))) > 0.0_wp) return
       pressure = pressure_of(pair)
-      call book_work(contact, pressure, p - pressure, before, after)
+      work(1) = 0.5_wp*(pressure(1)*before(1) + pressure(2)*before(2))
+      work(2) = 0.5_wp*((p(1) - pressure(1))*before(1) + (p(2) - pressure(2))*before(2))
+      work(3) = 0.5_wp*(pressure(1)*after(1) + pressure(2)*after(2))
+      work(4) = 0.5_wp*((p(1) - pressure(1))*after(1) + (p(2) - pressure(2))*after(2))
       associate (n => pair%normal(:, 1))
          p = [n(1)*p(1) + n(2)*p(2), n(1)*p(2) - n(2)*p(1)]
       end associate
-      contact%n_loaded = contact%n_loaded + 1
-      contact%loaded(contact%n_loaded) = pair%candidate
       if (pair%candidate > 0) then
          contact%corner_impulse(:, pair%candidate) = p
       else
@@ -191,24 +236,6 @@ contains
          contact%edge_impulse(:, -pair%candidate) = fading*contact%edge_impulse(:, -pair%candidate)
       end if
    end subroutine loosen_jam
-
-   !> Work of the two parts of an impulse over the half steps on either side of it.
-   pure subroutine book_work(contact, pressure, friction, before, after)
-      type(contact_type), intent(inout) :: contact
-      real(wp), intent(in) :: pressure(2)   !! [N s]
-      real(wp), intent(in) :: friction(2)   !! [N s]
-      real(wp), intent(in) :: before(2)     !! relative velocity [m/s]
-      real(wp), intent(in) :: after(2)
-
-      associate (w => contact%work_before)
-         w(1) = w(1) + 0.5_wp*(pressure(1)*before(1) + pressure(2)*before(2))
-         w(2) = w(2) + 0.5_wp*(friction(1)*before(1) + friction(2)*before(2))
-      end associate
-      associate (w => contact%work_after)
-         w(1) = w(1) + 0.5_wp*(pressure(1)*after(1) + pressure(2)*after(2))
-         w(2) = w(2) + 0.5_wp*(friction(1)*after(1) + friction(2)*after(2))
-      end associate
-   end subroutine book_work
 
    !> The part of an impulse that is pressure; the rest is friction.
    !>

@@ -5,8 +5,12 @@
 module lithofrac_run_contact_step
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: bad_contact, set_failure, status_type
-   use lithofrac_contact_solve, only: follow_motion, prescribed_collision, solve_contact, &
-      solved, too_fast
+   use lithofrac_contact_contact, only: find_groups, has_turned, turn_corners
+   use lithofrac_contact_search, only: has_moved
+   use lithofrac_contact_slices, only: last_of, most_groups, most_slices, &
+      worth_threads
+   use lithofrac_contact_solve, only: prescribed_collision, renew, solve_contact, solved, too_fast
+   use lithofrac_contact_surfaces, only: update_edges
    use lithofrac_run_model, only: model_type
    use lithofrac_run_node_update, only: n_sums
    use lithofrac_run_settings, only: no_damping, relative_to_affine
@@ -49,71 +53,117 @@ contains
    end subroutine note_velocities
 
    !> Add the contact impulses of this step to the predicted velocities.
-   subroutine close_contacts(model, status)
+   !>
+   !> Called by one thread; the others of its team take slices of the work.
+   subroutine close_contacts(model, threads, status)
       type(model_type), intent(inout) :: model
+      integer, intent(in) :: threads
       type(status_type), intent(out) :: status
 
-      integer :: code, pair(2)
-      logical :: renewed
+      integer :: code, pair(2), slice
+      logical :: threaded
+      real(wp) :: sums(n_sums, most_slices)
 
       associate (contact => model%contact)
-         call bring_positions(model)
+         threaded = threads > 1 .and. contact%surfaces%n > worth_threads
+         contact%n_slices = merge(most_slices, 1, threaded)
          pair = 1
-         call follow_motion(contact, renewed, code)
+         code = solved
+         !$omp taskloop default(shared) grainsize(1) if(threaded)
+         do slice = 1, contact%n_slices
+            call bring_positions(model, slice)
+         end do
+         !$omp end taskloop
+         if (any(contact%slices(:contact%n_slices)%moved) .or. .not. contact%candidates%listed) then
+            call renew(contact, code)
+            if (code == solved) model%fields%contact(:, contact%surfaces%node) = 0.0_wp
+         end if
          if (code == solved) then
-            if (renewed) model%fields%contact(:, contact%surfaces%node) = 0.0_wp
-            call bring_velocities(model)
-            call solve_contact(contact, model%dt, model%critical, code, pair)
+            threaded = threads > 1 .and. size(contact%near) > worth_threads
+            contact%n_slices = merge(most_slices, 1, threaded)
+            if (contact%n_groups /= min(threads, most_groups)) call find_groups(contact, &
+               min(threads, most_groups))
+            !$omp taskloop default(shared) grainsize(1) if(threaded)
+            do slice = 1, contact%n_slices
+               call bring_velocities(model, slice)
+            end do
+            !$omp end taskloop
+            if (any(contact%slices(:contact%n_slices)%turned)) call turn_corners(contact)
+            call solve_contact(contact, model%dt, model%critical, threaded, code, pair)
          end if
          if (code /= solved) then
             call explain(model, code, contact%surfaces%node(pair), status)
             return
          end if
-         call take_impulses(model)
+         !$omp taskloop default(shared) grainsize(1) if(threaded)
+         do slice = 1, most_slices
+            call take_impulses(model, slice, sums(:, slice))
+         end do
+         !$omp end taskloop
+         model%sums(:, model%blocks%n_runs + 1) = sum(sums, dim=2)
       end associate
    end subroutine close_contacts
 
-   pure subroutine bring_positions(model)
+   !> Positions of a slice of the boundary nodes: has one of them moved too far for the list?
+   pure subroutine bring_positions(model, slice)
       type(model_type), intent(inout) :: model
+      integer, intent(in) :: slice
 
-      integer :: i
+      integer :: i, first, last
 
       associate (surfaces => model%contact%surfaces, fields => model%fields)
-         do i = 1, surfaces%n
+         first = last_of(surfaces%n, slice - 1, model%contact%n_slices) + 1
+         last = last_of(surfaces%n, slice, model%contact%n_slices)
+         do i = first, last
             surfaces%u(1, i) = fields%u(1, surfaces%node(i))
             surfaces%u(2, i) = fields%u(2, surfaces%node(i))
          end do
+         model%contact%slices(slice)%moved = has_moved(model%contact%candidates, surfaces, first, &
+            last)
       end associate
    end subroutine bring_positions
 
-   !> Predicted velocities of the boundary nodes that contact may change.
-   pure subroutine bring_velocities(model)
+   !> Shape of the edges and predicted velocities of the nodes that contact may change.
+   pure subroutine bring_velocities(model, slice)
       type(model_type), intent(inout) :: model
+      integer, intent(in) :: slice
 
-      integer :: i, k
+      integer :: i, k, first, last
+      real(wp) :: speed
 
       associate (contact => model%contact, fields => model%fields)
-         do k = 1, size(contact%near)
+         first = last_of(size(contact%near), slice - 1, contact%n_slices) + 1
+         last = last_of(size(contact%near), slice, contact%n_slices)
+         call update_edges(contact%surfaces, contact%near(first:last))
+         speed = 0.0_wp
+         do k = first, last
             i = contact%near(k)
             associate (at => contact%motion(i), node => contact%surfaces%node(i))
                at%v(1) = fields%v(1, node)
                at%v(2) = fields%v(2, node)
+               speed = max(speed, at%v(1)**2 + at%v(2)**2)
             end associate
+            contact%queue%newest(i) = 0
          end do
+         contact%slices(slice)%speed = speed
+         contact%slices(slice)%turned = has_turned(contact, contact%near(first:last))
       end associate
    end subroutine bring_velocities
 
    !> Corrected velocities and forces of the nodes, and what the correction adds to the sums.
-   pure subroutine take_impulses(model)
+   pure subroutine take_impulses(model, slice, sums)
       type(model_type), intent(inout) :: model
+      integer, intent(in) :: slice
+      real(wp), intent(out) :: sums(n_sums)
 
       integer :: k, node
-      real(wp) :: per_step, sums(n_sums)
+      real(wp) :: per_step
 
       sums = 0.0_wp
       per_step = 1.0_wp/model%dt
       associate (contact => model%contact, fields => model%fields)
-         do k = 1, size(contact%near)
+         do k = last_of(size(contact%near), slice - 1, most_slices) + 1, &
+            last_of(size(contact%near), slice, most_slices)
             node = contact%surfaces%node(contact%near(k))
             associate (at => contact%record(contact%near(k)), v => contact%motion( &
                   contact%near(k))%v)
@@ -126,7 +176,6 @@ contains
             end associate
          end do
       end associate
-      model%sums(:, model%blocks%n_runs + 1) = sums
    end subroutine take_impulses
 
    !> What a change of velocity adds to kinetic energy and to the power of the damping.

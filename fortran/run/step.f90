@@ -119,7 +119,7 @@ contains
          !$omp end do
          if (.not. model%contact%on) cycle
          !$omp single
-         call close_contacts(model, contact_status)
+         call close_contacts(model, threads, contact_status)
          if (model%fracture%on .and. contact_status%code == ok) then
             call insert_cracks(model, contact_status)
             failures = [failures, spread(failure_type(), 1, &
@@ -346,7 +346,7 @@ contains
       end associate
       if (status%code /= ok) return
       call bring_masses(model)
-      call close_contacts(model, status)
+      call close_contacts(model, 1, status)
       do run = 1, model%blocks%n_runs
          call sum_run(model, run)
       end do

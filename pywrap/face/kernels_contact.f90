@@ -4,13 +4,14 @@ module kernels_contact
    use lithofrac_base_status, only: ok, status_type
    use lithofrac_contact_corners, only: classify
    use lithofrac_contact_friction, only: one_face, two_faces
+   use lithofrac_contact_islands, only: find_islands, group_islands
    use lithofrac_contact_search, only: candidates_type, list_candidates
    use lithofrac_contact_surfaces, only: new_surfaces, surfaces_type, update_shape
    use lithofrac_mesh_mesh, only: mesh_type, new_mesh
    implicit none
    private
 
-   public :: boundary_of, candidates_of, corner_kind, pair_impulse
+   public :: boundary_of, candidates_of, corner_kind, islands_of, pair_impulse
 
 contains
 
@@ -112,6 +113,38 @@ contains
          if (n > 0) pairs(:, i) = surfaces%node(list%edge(:, n))
       end do
    end subroutine candidates_of
+
+   !> Island and group of every node, by the candidates of a mesh; 0 off the boundary.
+   subroutine islands_of(nodes, n_nodes, triangles, n_elements, n_groups, island, group, code, &
+         message)
+      integer(c_int), intent(in) :: n_nodes, n_elements, n_groups
+      real(c_double), intent(in) :: nodes(2, n_nodes)          !! [m]
+      integer(c_int), intent(in) :: triangles(3, n_elements)
+      integer(c_int), intent(out) :: island(n_nodes)           !! lowest node of the island
+      integer(c_int), intent(out) :: group(n_nodes)
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      type(surfaces_type) :: surfaces
+      type(candidates_type) :: list
+      type(status_type) :: status
+      integer, allocatable :: found(:), weight(:), grouped(:)
+
+      island = 0
+      group = 0
+      call make_surfaces(nodes, triangles, surfaces, status)
+      code = status%code
+      message = ""
+      if (allocated(status%message)) message = status%message
+      if (code /= ok) return
+      call list_candidates(list, surfaces)
+      allocate (found(surfaces%n), weight(surfaces%n), grouped(surfaces%n))
+      call find_islands(surfaces, list, found)
+      weight = 1
+      call group_islands(found, weight, n_groups, grouped)
+      island(surfaces%node) = surfaces%node(found)
+      group(surfaces%node) = grouped
+   end subroutine islands_of
 
    subroutine make_surfaces(nodes, triangles, surfaces, status)
       real(c_double), intent(in) :: nodes(:, :)

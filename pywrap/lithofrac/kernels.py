@@ -45,6 +45,7 @@ of each."""
 
 _boundary_of = checked(_core.kernels_contact.boundary_of)
 _candidates_of = checked(_core.kernels_contact.candidates_of)
+_islands_of = checked(_core.kernels_contact.islands_of)
 
 CORNER_KINDS = ("none", "any", "both", "flat")
 """Meaning of the kind that `corner_kind` gives."""
@@ -63,6 +64,12 @@ def contact_candidates(mesh: Mesh, displacement: np.ndarray) -> tuple[np.ndarray
     _, pairs = _candidates_of(*arrays, max(1, sum(counts)))
     pairs = pairs.T - 1
     return pairs[: counts[0]], pairs[counts[0] : sum(counts)]
+
+
+def contact_islands(mesh: Mesh, n_groups: int) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest node of the island of every boundary node, and its group; -1 off the boundary."""
+    island, group = _islands_of(mesh.nodes.T, mesh.triangles.T + 1, n_groups)
+    return island - 1, group - 1
 
 
 ACTIVE_PLANES = (

@@ -1,5 +1,6 @@
 """Contact in a run: threads, bundles of steps, restart, place."""
 
+import numpy as np
 import pytest
 from contact_models import contact_problem, crushed_rubble, join, moved
 from models import hold, rectangle
@@ -32,12 +33,39 @@ def state_bits(run):
     return run.save().tobytes()
 
 
-def test_the_bits_do_not_depend_on_the_number_of_threads():
-    runs = [moving_scene() for _ in range(3)]
+def many_islands():
+    """Pairs of plates that hit each other at different speeds, far from other pairs."""
+    plate = rectangle(16, 1, 1.0, 0.1)
+    parts = {
+        f"plate{i}_{k}": moved(plate, (0.013 * k, 0.4 * i + 0.101 * k))
+        for i in range(20)
+        for k in (0, 1)
+    }
+    mesh = join(**parts)
+    run = Run(contact_problem(mesh, friction=0.4))
+    height = mesh.nodes[:, 1]
+    velocity = np.zeros_like(mesh.nodes)
+    upper = height % 0.4 > 0.1005
+    velocity[upper, 1] = -2e-3 * (1 + height[upper])
+    velocity[upper, 0] = 1e-3
+    run.set_motion(0 * velocity, velocity)
+    return run
+
+
+@pytest.mark.parametrize(
+    "scene", [moving_scene, many_islands, lambda: crushed_rubble(0.9, speed=5.0, jitter=0.2, n=12)]
+)
+def test_the_bits_do_not_depend_on_the_number_of_threads(scene):
+    """Few pairs, that are not worth threads; many islands; one large island."""
+    runs = [scene() for _ in range(3)]
     for threads, run in enumerate(runs, start=1):
         run.advance(400, threads)
     assert runs[0].contact_statistics().pairs_max > 5
+    assert runs[0].contact_statistics() == runs[1].contact_statistics()
     assert state_bits(runs[0]) == state_bits(runs[1]) == state_bits(runs[2])
+    runs[0].advance(50, 3)
+    runs[2].advance(50, 1)
+    assert state_bits(runs[0]) == state_bits(runs[2])
 
 
 def test_the_bits_do_not_depend_on_how_steps_are_bundled():
