@@ -212,7 +212,8 @@ contains
    !> Let impulses that only hold each other fade from the first guess of the next step.
    !>
    !> Nodes of several parts at one place can wedge each other within their friction cones: such
-   !> impulses cancel on every node, so nothing determines them and they grow with rounding.
+   !> impulses cancel on every node, or act where motion is prescribed, so nothing determines
+   !> them and they grow with rounding.
    pure subroutine loosen_jam(contact, pair)
       type(contact_type), intent(inout) :: contact
       type(pair_type), intent(in) :: pair
@@ -224,8 +225,10 @@ contains
       if (.not. own > 0.0_wp) return
       felt = 0.0_wp
       do k = 1, pair%n_nodes
-         associate (at => contact%record(pair%node(k)))
-            felt = max(felt, at%impulse(1)**2 + at%impulse(2)**2)
+         associate (sum_of => contact%record(pair%node(k))%impulse, &
+               yields => contact%motion(pair%node(k))%inverse_mass > 0.0_wp)
+            felt = max(felt, merge(sum_of(1)**2, 0.0_wp, yields(1)) &
+               + merge(sum_of(2)**2, 0.0_wp, yields(2)))
          end associate
       end do
       if (own <= unfelt**2*felt) return
