@@ -28,7 +28,6 @@ module lithofrac_contact_solve
    real(wp), parameter :: accuracy = 2.5e-4_wp     !! of the largest relative velocity
    real(wp), parameter :: fine = 1.0e-7_wp         !! gap that no sweep is worth, over h
    real(wp), parameter :: unfelt = 10.0_wp         !! impulse over what its nodes feel: a jam
-   real(wp), parameter :: fading = 0.5_wp          !! of the first guess in a jam, by step
    real(wp), parameter :: longest_way = 0.05_wp    !! of a pair in a step, over h
 
 contains
@@ -209,7 +208,7 @@ contains
       end if
    end subroutine book_pair
 
-   !> Let impulses that only hold each other fade from the first guess of the next step.
+   !> Keep impulses that only hold each other out of the first guess of the next step.
    !>
    !> Nodes of several parts at one place can wedge each other within their friction cones: such
    !> impulses cancel on every node, or act where motion is prescribed, so nothing determines
@@ -233,10 +232,9 @@ contains
       end do
       if (own <= unfelt**2*felt) return
       if (pair%candidate > 0) then
-         contact%corner_impulse(:, pair%candidate) = fading &
-            *contact%corner_impulse(:, pair%candidate)
+         contact%corner_impulse(:, pair%candidate) = 0.0_wp
       else
-         contact%edge_impulse(:, -pair%candidate) = fading*contact%edge_impulse(:, -pair%candidate)
+         contact%edge_impulse(:, -pair%candidate) = 0.0_wp
       end if
    end subroutine loosen_jam
 
