@@ -27,7 +27,7 @@ module lithofrac_contact_solve
    real(wp), parameter :: deep = 1.0e-4_wp         !! penetration that asks for many sweeps, over h
    real(wp), parameter :: accuracy = 2.5e-4_wp     !! of the largest relative velocity
    real(wp), parameter :: fine = 1.0e-7_wp         !! gap that no sweep is worth, over h
-   real(wp), parameter :: unfelt = 10.0_wp         !! impulse over what its nodes feel: a jam
+   real(wp), parameter :: unfelt = 30.0_wp         !! impulse over what its nodes feel: a jam
    real(wp), parameter :: longest_way = 0.05_wp    !! of a pair in a step, over h
 
 contains
