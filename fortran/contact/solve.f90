@@ -232,9 +232,9 @@ contains
       end do
       if (own <= unfelt**2*felt) return
       if (pair%candidate > 0) then
-         contact%corner_impulse(:, pair%candidate) = 0.0_wp
+         contact%corner_impulse(:, pair%candidate) = 0.5_wp*contact%corner_impulse(:, pair%candidate)
       else
-         contact%edge_impulse(:, -pair%candidate) = 0.0_wp
+         contact%edge_impulse(:, -pair%candidate) = 0.5_wp*contact%edge_impulse(:, -pair%candidate)
       end if
    end subroutine loosen_jam
 
