@@ -18,7 +18,6 @@ module lithofrac_contact_collect
    real(wp), parameter :: steps_ahead = 2.0_wp     !! a fast node makes a corner so long before
    real(wp), parameter :: open_steps = 4.0_wp      !! a gap that takes longer to close is open
    real(wp), parameter :: open_gap = 0.01_wp       !! no smaller gap is open, over h
-   real(wp), parameter :: slop = 1.0e-6_wp         !! penetration left alone, over h
    real(wp), parameter :: recovery = 0.2_wp        !! of a deeper one, in a critical step
    real(wp), parameter :: push = 1.0e-4_wp         !! largest recovery in a critical step, over h
    real(wp), parameter :: rigid = 1.0e-8_wp        !! compliance along a normal that is none
@@ -37,6 +36,7 @@ module lithofrac_contact_collect
       real(wp) :: dt                               !! [s]
       real(wp) :: critical                         !! largest stable step [s]
       real(wp) :: speed                            !! of the fastest node, without contact [m/s]
+      real(wp) :: slop                             !! penetration left alone, over h
    end type scales_type
 
 contains
@@ -391,7 +391,8 @@ contains
       if (gap >= 0.0_wp) then
          bias = gap/scales%dt
       else
-         bias = max(min(0.0_wp, recovery*(gap + slop*scales%h)), -push*scales%h)/scales%critical
+         bias = max(min(0.0_wp, recovery*(gap + scales%slop*scales%h)), -push*scales%h) &
+            /scales%critical
       end if
    end function feasible_bias
 

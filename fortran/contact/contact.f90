@@ -39,6 +39,7 @@ module lithofrac_contact_contact
       logical :: on = .false.
       type(surfaces_type) :: surfaces
       real(wp), allocatable :: friction(:, :)      !! (n_tags, n_tags)
+      real(wp) :: tolerance = 1.0_wp               !! of sweeps and penetration, over the usual one
       type(candidates_type) :: candidates
       integer, allocatable :: near(:)              !! boundary nodes and edges of the candidates
       integer, allocatable :: kind(:)              !! (n_corners)
@@ -76,10 +77,11 @@ module lithofrac_contact_contact
 contains
 
    !> Prepare the boundary of a mesh for contact.
-   subroutine new_contact(contact, mesh, friction, status)
+   subroutine new_contact(contact, mesh, friction, tolerance, status)
       type(contact_type), intent(out) :: contact
       type(mesh_type), intent(in) :: mesh
       real(wp), intent(in) :: friction(:, :)   !! by surface tag; bodies are the first tags
+      real(wp), intent(in) :: tolerance        !! of sweeps and penetration, over the usual one
       type(status_type), intent(out) :: status
 
       if (size(friction, 1) < mesh%n_bodies) then
@@ -88,11 +90,14 @@ contains
          call set_failure(status, bad_input, "contact: friction is a finite number >= 0")
       else if (any(abs(friction - transpose(friction)) > 0.0_wp)) then
          call set_failure(status, bad_input, "contact: friction must be symmetric")
+      else if (.not. (tolerance > 0.0_wp .and. tolerance <= huge(1.0_wp))) then
+         call set_failure(status, bad_input, "contact: tolerance is a finite number > 0")
       end if
       if (status%code /= ok) return
       call new_surfaces(contact%surfaces, mesh, status)
       if (status%code /= ok) return
       contact%friction = friction
+      contact%tolerance = tolerance
       call resize_motion(contact)
       contact%on = .true.
    end subroutine new_contact

@@ -26,8 +26,10 @@ module lithofrac_contact_solve
    integer, parameter :: many_sweeps = 200
    real(wp), parameter :: deep = 1.0e-4_wp         !! penetration that asks for many sweeps, over h
    real(wp), parameter :: accuracy = 2.5e-4_wp     !! of the largest relative velocity
+   real(wp), parameter :: slop = 1.0e-6_wp         !! penetration left alone, over h
    real(wp), parameter :: fine = 1.0e-7_wp         !! gap that no sweep is worth, over h
    real(wp), parameter :: unfelt = 30.0_wp         !! impulse over what its nodes feel: a jam
+   real(wp), parameter :: fading = 0.5_wp          !! of the first guess in a jam, by step
    real(wp), parameter :: longest_way = 0.05_wp    !! of a pair in a step, over h
 
 contains
@@ -63,14 +65,17 @@ contains
       contact%work_before = 0.0_wp
       contact%work_after = 0.0_wp
       call collect_pairs(contact, scales_type(contact%surfaces%h, dt, critical, &
-         sqrt(maxval(contact%slices(:contact%n_slices)%speed))), threaded, collides, node)
+         sqrt(maxval(contact%slices(:contact%n_slices)%speed)), contact%tolerance*slop), &
+         threaded, collides, node)
       if (collides) code = prescribed_collision
       call forget_impulses(contact)
       if (collides .or. contact%n_pairs == 0) return
       associate (h => contact%surfaces%h, groups => contact%groups(:contact%n_groups))
          deepest = maxval(contact%slices(:contact%n_slices)%deepest)
-         tolerance = max(accuracy*maxval(contact%slices(:contact%n_slices)%fastest), fine*h/dt)
-         most_sweeps = merge(many_sweeps, usual_sweeps, deepest > deep*h)
+         tolerance = contact%tolerance &
+            *max(accuracy*maxval(contact%slices(:contact%n_slices)%fastest), fine*h/dt)
+         most_sweeps = ceiling(merge(many_sweeps, usual_sweeps, deepest > deep*h) &
+            /sqrt(min(1.0_wp, contact%tolerance)))
          !$omp taskloop default(shared) grainsize(1) if(threaded)
          do group = 1, contact%n_groups
             call solve_group(contact, group, tolerance, most_sweeps, longest_way*h/dt)
@@ -208,7 +213,7 @@ contains
       end if
    end subroutine book_pair
 
-   !> Keep impulses that only hold each other out of the first guess of the next step.
+   !> Let impulses that only hold each other fade from the first guess of the next step.
    !>
    !> Nodes of several parts at one place can wedge each other within their friction cones: such
    !> impulses cancel on every node, or act where motion is prescribed, so nothing determines
@@ -232,9 +237,11 @@ contains
       end do
       if (own <= unfelt**2*felt) return
       if (pair%candidate > 0) then
-         contact%corner_impulse(:, pair%candidate) = 0.5_wp*contact%corner_impulse(:, pair%candidate)
+         contact%corner_impulse(:, pair%candidate) = fading &
+            *contact%corner_impulse(:, pair%candidate)
       else
-         contact%edge_impulse(:, -pair%candidate) = 0.5_wp*contact%edge_impulse(:, -pair%candidate)
+         contact%edge_impulse(:, -pair%candidate) = fading &
+            *contact%edge_impulse(:, -pair%candidate)
       end if
    end subroutine loosen_jam
 

@@ -39,7 +39,7 @@ module lithofrac_run_model
       type(contact_type) :: contact
       type(fracture_type) :: fracture
       integer, allocatable :: tag_nodes(:, :)             !! (2, n) edges with a surface tag
-      integer, allocatable :: tagged(:, :)                !! (2, n) their elements, sides; if it cracks
+      integer, allocatable :: tagged(:, :)                !! (2, n) their elements and sides
       integer, allocatable :: tags(:)                     !! (n)
       type(settings_type) :: settings
       type(ledger_type) :: ledger
@@ -226,16 +226,17 @@ contains
    end subroutine add_pressure
 
    !> Let the boundary touch itself; what is overlapped from the start is refused.
-   subroutine add_contact(model, friction, status)
+   subroutine add_contact(model, friction, tolerance, status)
       type(model_type), intent(inout) :: model
       real(wp), intent(in) :: friction(:, :)   !! by surface tag; bodies are the first tags
+      real(wp), intent(in) :: tolerance        !! of sweeps and penetration, over the usual one
       type(status_type), intent(out) :: status
 
       if (model%started) then
          call set_failure(status, bad_input, "contact: the run has started")
          return
       end if
-      call new_contact(model%contact, model%mesh, friction, status)
+      call new_contact(model%contact, model%mesh, friction, tolerance, status)
       if (status%code == ok) call refuse_overlap(model%contact%surfaces, model%mesh, status)
    end subroutine add_contact
 

@@ -134,9 +134,10 @@ contains
    end subroutine run_add_pressure
 
    !> Let the boundary touch itself, with friction by surface tag; bodies are the first tags.
-   subroutine run_add_contact(run, friction, n_tags, code, message)
+   subroutine run_add_contact(run, friction, n_tags, tolerance, code, message)
       integer(c_int), intent(in) :: run, n_tags
       real(c_double), intent(in) :: friction(n_tags, n_tags)
+      real(c_double), intent(in) :: tolerance          !! over the usual one
       integer(c_int), intent(out) :: code
       character(len=256), intent(out) :: message
 
@@ -144,7 +145,7 @@ contains
 
       call check_handle(run, code, message)
       if (code /= ok) return
-      call add_contact(slots(run)%model, friction, status)
+      call add_contact(slots(run)%model, friction, tolerance, status)
       call export_status(status, code, message)
    end subroutine run_add_contact
 

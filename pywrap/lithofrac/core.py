@@ -163,7 +163,7 @@ class Run:
             names, friction = contact.surfaces(mesh), contact.table(mesh)
         except ValueError as error:
             raise CoreError(str(error)) from None
-        _add_contact(self._handle, friction)
+        _add_contact(self._handle, friction, contact.tolerance)
         for tag in range(len(mesh.body_names), len(names)):
             _tag_surface(self._handle, (mesh.edge_sets[names[tag]] + 1).T, tag + 1)
 

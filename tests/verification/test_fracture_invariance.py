@@ -71,15 +71,16 @@ def cracked(problem, every=10):
 
 @pytest.fixture(scope="module")
 def punch():
-    """punch(speed) -> problem, its ledger and its first cracks; each made once."""
+    """punch(speed, tolerance) -> problem, its ledger and its first cracks; each made once."""
     done = {}
 
-    def made(speed):
-        if speed not in done:
-            case = find_case("punch_discrete", None, COARSE | {"loading.speed_m_s": speed})
+    def made(speed, tolerance=1.0):
+        if (speed, tolerance) not in done:
+            keys = {"loading.speed_m_s": speed, "contact.tolerance": tolerance}
+            case = find_case("punch_discrete", None, COARSE | keys)
             problem = make_problem(case, make_mesh(case))
-            done[speed] = problem, *cracked(problem)
-        return done[speed]
+            done[speed, tolerance] = problem, *cracked(problem)
+        return done[speed, tolerance]
 
     return made
 
@@ -109,19 +110,22 @@ def test_a_punch_that_is_turned_has_the_same_first_five_cracks(punch, turn):
     np.testing.assert_array_equal(other_edges[:, 0], edges[:, 0])
 
 
+@pytest.mark.parametrize(("tolerance", "allowed"), [(1.0, 1e-5), (1e-3, 1e-6)])
 @pytest.mark.parametrize(
     ("turn", "seed"),
     [(np.eye(2), 7), (MIRROR, None), (MIRROR, 8)],
     ids=["renumbered", "mirrored", "mirrored and renumbered"],
 )
-def test_a_punch_with_other_numbers_has_the_same_first_five_cracks(punch, turn, seed):
-    """Places and order to 1e-9; energies to 1e-5 where 1e-6 is asked for.
+def test_a_punch_with_other_numbers_has_the_same_first_five_cracks(
+    punch, turn, seed, tolerance, allowed
+):
+    """Places and order to 1e-9; energies to 1e-6 with contact solved closely.
 
-    They part while all is elastic: the order of the contact sweeps follows the numbers, and what
-    the sweeps leave adds up to a penetration below the slop. Measured 8e-7 to 6e-6; about 1e-7
-    with contact solved to 1e-7 and a slop of 1e-9 h.
+    Until the first crack all is elastic. The order of the contact sweeps follows the numbers, and
+    what they leave adds up to a penetration below the slop: energies part by 8e-7 to 6e-6 with
+    the usual tolerance.
     """
-    problem, ledger, edges = punch(0.3)
+    problem, ledger, edges = punch(0.3, tolerance)
     node_order = np.arange(len(problem.mesh.nodes))
     element_order = np.arange(len(problem.mesh.triangles))
     if seed is not None:
@@ -131,5 +135,5 @@ def test_a_punch_with_other_numbers_has_the_same_first_five_cracks(punch, turn, 
     assert other.shape == ledger.shape
     error = abs(other - ledger).max() / ledger.sum(axis=1).max()
     print(f"energies differ by {error:.1e}")
-    assert error < 1e-5
+    assert error < allowed
     assert difference(edges, other_edges, turn, np.ptp(problem.mesh.nodes)) < 1e-9

@@ -23,6 +23,8 @@ class ContactSection(Section):
     """Coefficient by pair of surfaces, in either order: `rock-platen: 0.005`."""
     default_friction: Friction = 0.0
     """Coefficient of the pairs that `friction` does not name."""
+    tolerance: float = Field(default=1.0, ge=1e-6, le=1e3)
+    """Of the contact solver and of the penetration that is left alone, over the usual one."""
 
     @property
     def pairs(self) -> dict[tuple[str, str], float]:

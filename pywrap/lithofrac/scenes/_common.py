@@ -45,7 +45,7 @@ def _contact(case: Case, mesh: Mesh) -> Contact | None:
         for a in bodies_of(first, mesh)
         for b in bodies_of(second, mesh)
     }
-    return Contact(table, case.contact.default_friction)
+    return Contact(table, case.contact.default_friction, case.contact.tolerance)
 
 
 def _fracture(case: Case) -> Fracture | None:
