@@ -14,6 +14,8 @@ module lithofrac_contact_multipliers
    public :: queue_type, solve_pairs
 
    integer, parameter :: early_sweeps = 8  !! slip that goes to and fro needs no more of them
+   integer, parameter :: calm_after = 20   !! sweeps; who still goes round in circles is slowed
+   real(wp), parameter :: calm = 0.5_wp    !! part of a change that is then taken
    real(wp), parameter :: late = 8.0_wp    !! tolerance after the early sweeps, over that before
    real(wp), parameter :: share = 0.25_wp  !! of it that one pair may do to another unseen
 
@@ -52,7 +54,7 @@ contains
       do k = first, last
          i = order(k)
          pairs(i)%is_queued = .false.
-         call visit_pair(pairs, i, motion, tolerance, queue, first, queued)
+         call visit_pair(pairs, i, motion, tolerance, 1.0_wp, queue, first, queued)
       end do
       do sweeps = 1, most_sweeps - 1
          converged = queued == 0
@@ -64,7 +66,8 @@ contains
          do k = first + n - 1, first, -1
             i = queue%now(k)
             pairs(i)%is_queued = .false.
-            call visit_pair(pairs, i, motion, enough, queue, first, queued)
+            call visit_pair(pairs, i, motion, enough, merge(1.0_wp, calm, sweeps <= calm_after), &
+               queue, first, queued)
          end do
       end do
       converged = queued == 0
@@ -86,33 +89,45 @@ contains
    end subroutine link_pair
 
    !> Solve pair `i`; queue the pairs that feel it.
-   pure subroutine visit_pair(pairs, i, motion, tolerance, queue, first, n)
+   pure subroutine visit_pair(pairs, i, motion, tolerance, part, queue, first, n)
       type(pair_type), intent(inout), contiguous :: pairs(:)
       integer, intent(in) :: i
       type(motion_type), intent(inout), contiguous :: motion(:)
       real(wp), intent(in) :: tolerance     !! change of a relative velocity [m/s]
+      real(wp), intent(in) :: part          !! of the change of its impulse that is taken
       type(queue_type), intent(inout) :: queue
       integer, intent(in) :: first          !! place of the group in the queue
       integer, intent(inout) :: n           !! its pairs in the queue
 
-      real(wp) :: p(2), x, y, dv
+      real(wp) :: p(2), x, y, dv, largest
       integer :: k
 
       call solve_pair(pairs(i), motion, p)
       associate (pair => pairs(i))
-         x = p(1) - pair%impulse(1)
-         y = p(2) - pair%impulse(2)
+         x = part*(p(1) - pair%impulse(1))
+         y = part*(p(2) - pair%impulse(2))
          if (.not. max(abs(x), abs(y)) > 0.0_wp) return
+         if (part < 1.0_wp) then
+            p(1) = pair%impulse(1) + x
+            p(2) = pair%impulse(2) + y
+         end if
          pair%impulse(1) = p(1)
          pair%impulse(2) = p(2)
          call add_impulse(pair, x, y, motion)
+         largest = 0.0_wp
          do k = 1, pair%n_nodes
             associate (at => motion(pair%node(k)))
                dv = abs(pair%weight(k))*max(abs(x)*at%inverse_mass(1), abs(y)*at%inverse_mass(2))
             end associate
+            largest = max(largest, dv)
             if (dv > share*tolerance) call wake(pairs, i, queue%newest(pair%node(k)), &
                share*tolerance/dv, queue, first, n)
          end do
+         ! What was not taken is still to come.
+         if ((1.0_wp - part)*largest <= part*share*tolerance .or. pair%is_queued) return
+         pair%is_queued = .true.
+         queue%next(first + n) = i
+         n = n + 1
       end associate
    end subroutine visit_pair
 

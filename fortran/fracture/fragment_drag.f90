@@ -5,7 +5,7 @@
 !> force and no moment in a fragment.
 module lithofrac_fracture_fragment_drag
    use lithofrac_base_kinds, only: wp
-   use lithofrac_mesh_mesh, only: mesh_type
+   use lithofrac_mesh_mesh, only: mesh_type, triangle_area
    implicit none
    private
 
@@ -60,21 +60,26 @@ contains
       drag%force = force(:, drag%node)
    end subroutine list_loose_nodes
 
-   !> Parts that are not the one with most elements of their body (of equals the first).
+   !> Parts that are not the largest of their body (of equals the first).
    pure function find_loose(mesh, part) result(is_loose)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: part(:)          !! (n_elements)
       logical :: is_loose(mesh%n_elements)    !! by number of the part
 
-      integer :: elements(mesh%n_elements), element, body
+      real(wp) :: area(mesh%n_elements)       !! by number of the part [m2]
+      integer :: element, body
 
-      elements = 0
+      area = 0.0_wp
       do element = 1, mesh%n_elements
-         if (part(element) > 0) elements(part(element)) = elements(part(element)) + 1
+         if (part(element) == 0) cycle
+         associate (corner => mesh%triangles(:, element), whole => area(part(element)))
+            whole = whole + triangle_area(mesh%nodes(:, corner(1)), mesh%nodes(:, corner(2)), &
+               mesh%nodes(:, corner(3)))
+         end associate
       end do
-      is_loose = elements > 0
+      is_loose = area > 0.0_wp
       do body = 1, mesh%n_bodies
-         is_loose(maxloc(elements, dim=1, mask=mesh%body(:mesh%n_elements) == body)) = .false.
+         is_loose(maxloc(area, dim=1, mask=mesh%body(:mesh%n_elements) == body)) = .false.
       end do
    end function find_loose
 

@@ -8,13 +8,14 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 import lithofrac
 from lithofrac.analysis.strength import first_peak
-from lithofrac.core import Run
+from lithofrac.core import ContactStatistics, Run
 from lithofrac.errors import CoreError
 from lithofrac.problem import Problem
 from lithofrac.results import checkpoint
@@ -24,6 +25,7 @@ from lithofrac.results.files import write_json, write_table
 from lithofrac.results.recorder import Recorder
 
 CHECKPOINT_SECONDS = 20.0
+MANY_UNCONVERGED = 0.05  # of the steps: worth a note in the summary
 # Of one core, for the prediction of `plan`: all elastic, and with half of the elements yielding.
 ELASTIC_RATE, YIELDING_RATE = 60e6, 6e6  # element-steps per second
 
@@ -235,6 +237,7 @@ class _Session:
             "steps": run.step,
             "time_step_min_s": run.dt,
             "time_step_max_s": run.dt,
+            "time_step_continuum_s": Run(replace(self.problem, fracture=None)).dt,
             "threads": self.threads,
             "core_seconds": core,
             "wall_seconds": self.wall_seconds,
@@ -258,7 +261,7 @@ class _Session:
             "contact_pairs_max": contact.pairs_max,
             "contact_sweeps_mean": contact.sweeps_mean,
             "contact_unconverged_steps": contact.unconverged_steps,
-            "notes": self.notes,
+            "notes": [*self.notes, *_warnings(contact, run.step)],
         }
 
 
@@ -306,6 +309,16 @@ def _residual(energy) -> float | None:
     internal = internal + energy["fracture_dissipation_J"]
     scale = max(internal.abs().max(), energy["external_J"].abs().max(), energy["kinetic_J"].max())
     return _finite(energy["residual_J"].abs().max() / scale) if scale > 0.0 else 0.0
+
+
+def _warnings(contact: ContactStatistics, steps: int) -> list[str]:
+    """Sentences about a run that went to its end and yet should be looked at."""
+    if contact.unconverged_steps <= MANY_UNCONVERGED * steps:
+        return []
+    return [
+        f"contact did not converge in {contact.unconverged_steps} of {steps} steps; "
+        "try a smaller time_step_factor or loading speed"
+    ]
 
 
 def _ratio(part: float, whole: float) -> float:

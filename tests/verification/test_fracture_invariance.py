@@ -10,7 +10,7 @@ from lithofrac.core import Run
 from lithofrac.problem import Mesh
 from lithofrac.scenes import make_mesh, make_problem
 
-pytestmark = [pytest.mark.verification, pytest.mark.slow]
+pytestmark = pytest.mark.verification
 COARSE = {
     "scene.strip_element_size_mm": 2.0,
     "scene.element_size_mm": 6.0,

@@ -109,16 +109,14 @@ def continuum_of(run: Run, runs: list[Run]) -> Run | None:
 
 
 def continuum_step(run: Run, runs: list[Run]) -> float:
-    """Time step of the continuum in a run's case [s]; NaN where the runs do not tell it.
+    """Time step of the continuum in a run's case [s]; NaN where nothing tells it.
 
-    Cracks along edges leave the elements as they are, so that the largest step of such a run is
-    that of the continuum as well. A run that may cut elements keeps a reserve from the start.
+    That of the twin, else of the same problem built without cracks, which a run puts on record.
     """
     twin = continuum_of(run, runs)
     if twin is not None:
         return twin.summary["time_step_min_s"]
-    along_edges = [one for one in _alike(run, runs) if one.fracture == "inter_element"]
-    return max((one.summary["time_step_max_s"] for one in along_edges), default=float("nan"))
+    return run.summary.get("time_step_continuum_s", float("nan"))
 
 
 def _alike(run: Run, runs: list[Run]) -> list[Run]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from lithofrac.core import Run
+from lithofrac.core import Energy, Run
 from lithofrac.results.cracks import FRAGMENT_COLUMNS, fragments
 
 ENERGY = (
@@ -68,9 +68,8 @@ class Recorder:
             np.concatenate([[run.step, time], run.loads().ravel(), self._contact_row()])
         )
         self._note_fragments()
-        scale = max(abs(ledger.external), abs(ledger.initial), ledger.internal)
         entries = [getattr(ledger, name) for name in ENERGY]
-        self.energy.append(np.array([time, *entries, ledger.residual * scale, ledger.residual]))
+        self.energy.append(np.array([time, *entries, _residual(ledger), ledger.residual]))
         if run.problem.probes:
             state = run.elements(np.fromiter(run.problem.probes.values(), int))
             rows = np.column_stack(
@@ -191,6 +190,13 @@ class Recorder:
         )
         values = np.concatenate(self.probes)
         return table.assign(**dict(zip(["time_s", *PROBE_COLUMNS], values.T, strict=True)))
+
+
+def _residual(ledger: Energy) -> float:
+    """Inside minus outside [J]; fortran/run/energy.f90 divides it by the largest energy so far."""
+    outside = ledger.external + ledger.damping + ledger.contact + ledger.friction
+    outside += ledger.insertion + ledger.relump + ledger.initial
+    return ledger.kinetic + ledger.internal - outside
 
 
 def _value_at(moment: float, times: pd.Series, values: pd.Series) -> float:

@@ -67,17 +67,18 @@ def test_cost_is_held_against_the_continuum_of_the_same_case(make_block, make_ru
     assert table.loc["soft_p00", "time_step_over_continuum"] == 1.0
 
 
-def test_without_a_continuum_the_step_is_held_against_runs_with_cracks_along_edges(
+def test_without_a_continuum_run_the_step_is_held_against_the_problem_without_cracks(
     make_block, data_folder
 ):
-    """Their first step, 1e-8 s; of a run that may cut elements it says nothing."""
-    cut = make_block("cut", mode="intra_element", time_step_min_s=4e-9, time_step_max_s=4e-9)
-    alone = discrete.cracks([cut], data_folder).iloc[0]
+    """A run puts that step on record; one that has none says nothing."""
+    alone = discrete.cracks([make_block("old")], data_folder).iloc[0]
     assert pd.isna(alone["continuum"])
     assert np.isnan(alone["time_step_over_continuum"])
-    both = discrete.cracks([cut, make_block("along")], data_folder).set_index("case")
+    cut = make_block("cut", mode="intra_element", time_step_min_s=4e-9, time_step_continuum_s=1e-8)
+    both = discrete.cracks([cut, make_block("along", time_step_continuum_s=9e-9)], data_folder)
+    both = both.set_index("case")
     assert both.loc["cut", "time_step_over_continuum"] == pytest.approx(0.4)
-    assert both.loc["along", "time_step_over_continuum"] == pytest.approx(0.9)
+    assert both.loc["along", "time_step_over_continuum"] == pytest.approx(1.0)
     assert np.isnan(both.loc["along", "core_time_over_continuum"])
 
 
@@ -145,7 +146,8 @@ def test_stiff_blocks_and_other_scenes_are_measured_without_a_verdict(
 
 def test_step_may_fall_only_where_elements_are_cut(make_block, data_folder, limits):
     """Both took 0.9 of the step of the continuum."""
-    blocks = [make_block("inter"), make_block("intra", mode="intra_element")]
+    step = {"time_step_continuum_s": 1e-8}
+    blocks = [make_block("inter", **step), make_block("intra", mode="intra_element", **step)]
     rows = verdicts(blocks, data_folder, limits)
     assert rows["inter", "smallest"]["verdict"] == "does not hold"
     assert rows["intra", "smallest"]["verdict"] == "holds"
