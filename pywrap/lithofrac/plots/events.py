@@ -75,7 +75,8 @@ def draw_length(axes: Axes, run: Run) -> None:
         length = np.concatenate([[0.0], table["length_mm"].cumsum(), [table["length_mm"].sum()]])
         axes.step(strain, length, where="post", color=colour, label=words)
     axes.set(ylabel="crack length\n[mm]", ylim=(0, None))
-    axes.legend(loc="upper left")
+    axes.set_ylim(top=1.35 * axes.get_ylim()[1])  # room for the legend above the curves
+    axes.legend(loc="upper left", ncols=3)
 
 
 def stress_label(run: Run) -> str:

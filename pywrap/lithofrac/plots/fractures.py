@@ -20,6 +20,7 @@ MODES = {
 VISIBLE, LARGEST = 0.005, 0.02  # displacement over extent: magnified below the one, up to the other
 ROUND = np.array([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000])
 BESIDE, ABOVE = 1.2, 1.7  # inches for labels and the bar, for labels and the legend
+TWO_LINES = 0.3  # inches for titles of two lines
 TALLEST, NARROWEST = 5.0, 5.2  # inches, of a panel and of the figure
 AROUND = 0.06  # of the extent, shown beside the bodies; what flies further is cut off
 
@@ -57,7 +58,9 @@ def series(inputs: list[Path], data: Path) -> Figure:
     """Patterns of several runs at their ends, by mode, side by side."""
     runs = find_runs(inputs)
     frames = [run.last_frame for run in runs]
-    drawn, axes = style.new_figure(1, len(runs), **_size(frames[0], len(runs)), sharey=True)
+    size = _size(frames[0], len(runs))
+    size["height"] += TWO_LINES
+    drawn, axes = style.new_figure(1, len(runs), **size, sharey=True)
     for panel, run, frame in zip(axes[0], runs, frames, strict=True):
         faces, factor = find_faces(frame, run.cracks), magnification(frame)
         draw_bodies(panel, run, frame, faces, factor)
