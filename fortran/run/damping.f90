@@ -13,6 +13,8 @@ module lithofrac_run_damping
 
    integer, parameter :: n_moments = 12  !! sums of `fit_affine`
 
+   real(wp), parameter :: slender = 1.0e-12_wp  !! squared width over length of a body without one
+
    !> v(x) = velocity + gradient (x - centre).
    type :: affine_type
       real(wp) :: velocity(2) = 0.0_wp       !! [m/s]
@@ -39,6 +41,8 @@ contains
       xx(2) = moments(11) - mass*affine%centre(1)*affine%centre(2)
       xx(3) = moments(12) - mass*affine%centre(2)**2
       determinant = xx(1)*xx(3) - xx(2)**2
+      ! nodes on a line tell no gradient
+      if (determinant <= slender*(xx(1) + xx(3))**2) return
       affine%gradient(:, 1) = (vx(:, 1)*xx(3) - vx(:, 2)*xx(2))/determinant
       affine%gradient(:, 2) = (vx(:, 2)*xx(1) - vx(:, 1)*xx(2))/determinant
    end function fit_affine
