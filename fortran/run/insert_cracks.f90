@@ -8,7 +8,8 @@ module lithofrac_run_insert_cracks
    use lithofrac_base_status, only: ok, status_type
    use lithofrac_fracture_arms, only: choose_arms, inter_element
    use lithofrac_fracture_bonds, only: add_bond, bond_type
-   use lithofrac_fracture_element_failure, only: any_failed, reset_element, set_failure_factors
+   use lithofrac_fracture_element_failure, only: any_failed, paper_reset, reset_element, &
+      set_failure_factors
    use lithofrac_fracture_fracture, only: record_crack
    use lithofrac_fracture_plan, only: crack_type, plan_cracks, worth_another_look
    use lithofrac_mesh_cut, only: sound
@@ -53,6 +54,7 @@ contains
             call open_crack(model, cracks(i), factor, edits, release)
          end do
          fracture%retry = [fracture%retry, spread(0.0_wp, 1, edits%n_nodes)]
+         call renew_grains(model, edits)
       end associate
       call grow(model, edits, status)
       if (status%code == ok) call hold_together(model, edits, release)
@@ -290,6 +292,30 @@ contains
          call tie(model, group, maxval(release, mask=root == root(i)))
       end do
    end subroutine hold_together
+
+   !> An element on its own has no edge left to open: with its strength used up it would flow
+   !> without end, and turn inside out. Its damage is that of the cracks around it.
+   subroutine renew_grains(model, edits)
+      type(model_type), intent(inout) :: model
+      type(edits_type), intent(in) :: edits
+
+      real(wp), parameter :: any_way(2) = [1.0_wp, 0.0_wp]
+      real(wp) :: regained
+      integer :: i
+
+      associate (topology => model%fracture%topology)
+         do i = 1, edits%n_changed
+            associate (element => edits%changed(i))
+               if (element > edits%elements_before .or. .not. topology%alive(element)) cycle
+               if (any(topology%neighbour(:, element) > 0)) cycle
+               call reset_element(model%chunks, element, &
+                  model%rocks(model%mesh%body(element)), any_way, paper_reset, model%state, &
+                  regained)
+               model%ledger%reset = model%ledger%reset + regained
+            end associate
+         end do
+      end associate
+   end subroutine renew_grains
 
    subroutine tie(model, group, n_steps)
       type(model_type), intent(inout) :: model
