@@ -89,7 +89,7 @@ def size_effect(inputs: list[Path], data: Path) -> pd.DataFrame:
     What initiates only after the block has borne its largest stress is not found: the axial stress
     then says how far the block has failed.
     """
-    return size_effect_of(hole_initiation(inputs, data), _rock(inputs))
+    return size_effect_of(hole_initiation(inputs, data), rock_of(inputs))
 
 
 def size_effect_of(initiation: pd.DataFrame, rock: Material | None) -> pd.DataFrame:
@@ -115,7 +115,7 @@ def size_effect_of(initiation: pd.DataFrame, rock: Material | None) -> pd.DataFr
     return _sorted(pd.DataFrame(rows, columns=EFFECT), [*GROUP, "radius_mm"])
 
 
-def _rock(inputs: list[Path]) -> Material | None:
+def rock_of(inputs: list[Path]) -> Material | None:
     """Rock of the runs; that of the first one which can fail."""
     runs: list[Run] = [run.run for run in hole_runs(inputs)]
     rocks = [run.rock for run in runs if not run.case["material"].get("elastic", False)]
