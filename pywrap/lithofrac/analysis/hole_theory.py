@@ -11,12 +11,15 @@ Mech. 75, 1696; Tada, Paris & Irwin, The Stress Analysis of Cracks Handbook, two
 a circular hole in an infinite plate.
 """
 
+from functools import cache
+
 import numpy as np
 from scipy.optimize import brentq
 
 from lithofrac.analysis.mohr_coulomb import first_yield, peak_strength
 
 CROWN, SIDEWALL = 1.0, 3.0  # hoop tension and hoop compression at the wall over p (Kirsch)
+GAUSS = np.polynomial.legendre.leggauss(48)  # points and weights on (-1, 1)
 LONGEST = 3.0  # crack over radius, beyond which the mean release rate has long been falling
 
 
@@ -110,9 +113,15 @@ def mean_release(length: float) -> float:
     E' times the mean energy released by a crack that appears at once; Gauss's rule, whose error is
     that of rounding up to `LONGEST`.
     """
-    points, weights = np.polynomial.legendre.leggauss(48)
-    a = 0.5 * length * (1.0 + points)
-    return float(0.5 * weights @ (np.pi * a * axial_crack_factor(a) ** 2))
+    a = 0.5 * length * (1.0 + GAUSS[0])
+    return float(0.5 * GAUSS[1] @ (np.pi * a * axial_crack_factor(a) ** 2))
+
+
+@cache
+def easiest_length() -> float:
+    """Length [radii] whose mean energy release is the largest; the same for every hole."""
+    lengths = np.linspace(0.01, LONGEST, 1000)
+    return float(lengths[np.argmax([mean_release(x) for x in lengths])])
 
 
 def primary_coupled(
@@ -133,9 +142,8 @@ def primary_coupled(
     def energy(x: float) -> float:
         return k_over / np.sqrt(mean_release(x))
 
-    lengths = np.append(1e-12, np.geomspace(1e-2, LONGEST, 400))
-    best = float(lengths[np.argmax([mean_release(x) for x in lengths])])
+    best = easiest_length()
     if stress(best) <= energy(best):  # energy alone rules: stress is high enough all along
         return energy(best), best * radius
-    length = brentq(lambda x: stress(x) - energy(x), lengths[0], best, xtol=1e-14)
+    length = brentq(lambda x: stress(x) - energy(x), 1e-12, best, xtol=1e-14)
     return stress(length), length * radius

@@ -6,7 +6,15 @@ from pathlib import Path
 import pandas as pd
 from matplotlib.figure import Figure
 
-from lithofrac.analysis import discrete, options, results, tables
+from lithofrac.analysis import (
+    discrete,
+    hole_checks,
+    hole_tables,
+    options,
+    results,
+    size_law,
+    tables,
+)
 from lithofrac.analysis.punch import punch as punch_table
 from lithofrac.data import DataError
 from lithofrac.plots import (
@@ -14,11 +22,13 @@ from lithofrac.plots import (
     events,
     fractures,
     gallery,
+    hole,
     measured,
     mesh,
     punch,
     sandstone,
     single_element,
+    size_effect,
     style,
 )
 
@@ -34,6 +44,9 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "fracture_series": fractures.series,
     "events": events.figure,
     "punch": punch.figure,
+    "hole_gauges": hole.gauges,
+    "hole_patterns": hole.patterns,
+    "size_effect": size_effect.figure,
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "single_element": tables.single_element,
@@ -48,6 +61,10 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "cracks": discrete.cracks,
     "bands": discrete.bands,
     "punch": punch_table,
+    "hole_initiation": hole_tables.hole_initiation,
+    "size_effect": hole_tables.size_effect,
+    "hole_fits": size_law.hole_fits,
+    "hole_checks": hole_checks.hole_checks,
     "results": results.verdicts,
 }
 FORMATS = (".svg", ".png", ".pdf")
