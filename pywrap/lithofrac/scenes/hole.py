@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from lithofrac.config.case import Case
+from lithofrac.config.scene import Hole
 from lithofrac.problem import Measures, Mesh, Problem
 from lithofrac.scenes._common import roller, settings, transit
 from lithofrac.scenes._finish import finished
@@ -92,12 +93,18 @@ def problem(case: Case, mesh: Mesh) -> Problem:
         pressure_loads=(),
         end_time=timing.end_time,
         measures=Measures(axial_load="top", area=scene.height, length=half),
-        **settings(case, mesh, _gauges(scene.radius)),
+        **settings(case, mesh, _gauges(scene)),
     )
 
 
-def _gauges(radius: float) -> dict[str, tuple[float, float]]:
-    """Name -> place [m]: crown, both sidewalls, and the fan on both sides of the load axis."""
+def _gauges(scene: Hole) -> dict[str, tuple[float, float]]:
+    """Name -> place [m]: crown, both sidewalls, and the fan on both sides of the load axis.
+
+    (0, R) itself is a node: which of its elements is nearest would be chance, so the gauge of the
+    crown lies half an element above it. The primary crack opens between the elements there and
+    relieves one of them before its strength is used up: both sides are recorded as well.
+    """
+    radius, size = scene.radius, scene.wall_size
     fan = [
         (side * r * radius * np.sin(np.radians(angle)), r * radius * np.cos(np.radians(angle)))
         for side in (1.0, -1.0)
@@ -105,7 +112,9 @@ def _gauges(radius: float) -> dict[str, tuple[float, float]]:
         for angle in FAN_ANGLES
     ]
     return {
-        "crown": (0.0, radius),
+        "crown": (0.0, radius + 0.5 * size),
+        "crown_right": (0.5 * size, radius + 0.25 * size),
+        "crown_left": (-0.5 * size, radius + 0.25 * size),
         "sidewall_right": (radius, 0.0),
         "sidewall_left": (-radius, 0.0),
         **{f"remote_{i:02d}": place for i, place in enumerate(fan, start=1)},
