@@ -7,6 +7,7 @@ import pandas as pd
 
 from lithofrac.analysis import hole_theory as theory
 from lithofrac.analysis.hole import AFTER, CRITERIA, ZONES, HoleRun, is_hole
+from lithofrac.analysis.hole_cohesive import primary_cohesive
 from lithofrac.analysis.runs import Run, find_runs
 from lithofrac.config.material import Material
 
@@ -20,7 +21,7 @@ INITIATION = [
 NUMBERS = [name for name in INITIATION if name.endswith(("_MPa", "_mm"))]
 EFFECT = [
     *GROUP, "radius_mm", "runs", "found", "mean_MPa", "min_MPa", "max_MPa",
-    "kirsch_MPa", "average_stress_MPa", "coupled_MPa",
+    "kirsch_MPa", "average_stress_MPa", "coupled_MPa", "cohesive_MPa",
 ]  # fmt: skip
 
 
@@ -62,24 +63,26 @@ class Theory:
     kirsch: float
     average: float
     coupled: float
+    cohesive: float
 
 
 def predicted(zone: str, rock: Material, radius_mm: float) -> Theory:
-    """Theory of `hole_theory` for the primary fracture and the sidewall; there is none for remote.
+    """Theory of `hole_theory` and `hole_cohesive` for crown and sidewall; there is none for remote.
 
-    The sidewall of Kirsch is first yield; its strength is theory.sidewall_strength.
+    At the sidewall Kirsch is first yield, 3 p against the uniaxial yield of Table 1.
     """
     nan = float("nan")
     if zone == "sidewall":
-        return Theory(theory.sidewall_yield(rock.table) / MPA, nan, nan)
+        return Theory(theory.sidewall_yield(rock.table) / MPA, nan, nan, nan)
     if zone == "remote" or not rock.tensile_strength:
-        return Theory(nan, nan, nan)
+        return Theory(nan, nan, nan, nan)
     own = rock.tensile_strength, rock.young, rock.poisson, rock.fracture_energy
     length = theory.characteristic_length(*own)
     return Theory(
         theory.primary_kirsch(rock.tensile_strength) / MPA,
         theory.primary_average(rock.tensile_strength, length, MM * radius_mm) / MPA,
         theory.primary_coupled(*own, MM * radius_mm)[0] / MPA,
+        primary_cohesive(*own, MM * radius_mm)[0] / MPA,
     )
 
 
@@ -110,6 +113,7 @@ def size_effect_of(initiation: pd.DataFrame, rock: Material | None) -> pd.DataFr
                 "kirsch_MPa": said.kirsch,
                 "average_stress_MPa": said.average,
                 "coupled_MPa": said.coupled,
+                "cohesive_MPa": said.cohesive,
             }
         )
     return _sorted(pd.DataFrame(rows, columns=EFFECT), [*GROUP, "radius_mm"])

@@ -27,7 +27,8 @@ OTHERS = {"mesh1mm": ("P", "wall elements of 1 mm"), "block150": ("D", "blocks o
 THEORY = (
     ("kirsch", ":", {"primary": "Kirsch: hoop tension is ft", "sidewall": "Kirsch: first yield"}),
     ("average", "-.", {"primary": "average stress"}),
-    ("coupled", "-", {"primary": "finite fracture mechanics"}),
+    ("coupled", (0, (6, 1.5)), {"primary": "finite fracture mechanics"}),
+    ("cohesive", "-", {"primary": "cohesive crack, mouth open"}),
 )  # field of `Theory`, dash, words by zone
 SERIES = ("v", "x", "+", "1", "2")  # markers of digitised series
 
@@ -89,11 +90,11 @@ def draw_theory(axes: Axes, zone: str, rock: Material | None, end: float) -> Non
     """Lines of the theories that say something of a zone."""
     if rock is None:
         return
-    radius = np.linspace(0.5, end, 140)
+    radius = np.geomspace(0.5, end, 40)
     said = [predicted(zone, rock, value) for value in radius]
     for field, dash, words in THEORY:
         if zone in words:
-            axes.plot(radius, [getattr(one, field) for one in said], dash, color=style.BLACK,
+            axes.plot(radius, [getattr(one, field) for one in said], ls=dash, color=style.BLACK,
                       lw=1.1, zorder=2)  # fmt: skip
 
 
@@ -124,7 +125,7 @@ def _legend(axes: Axes, panels, table: pd.DataFrame) -> None:
             axes.plot([], [], mark, mfc="none", mec=style.GREY, label=words)
     axes.plot([], [], color=style.LIGHT, lw=4.0, label="largest stress that the block bears")
     for _, dash, words in THEORY:
-        axes.plot([], [], dash, color=style.BLACK, lw=1.1, label="; ".join(words.values()))
+        axes.plot([], [], ls=dash, color=style.BLACK, lw=1.1, label="; ".join(words.values()))
     handles, labels = axes.get_legend_handles_labels()
     for panel in list(panels)[: len(ZONES)]:
         more = panel.get_legend_handles_labels()
