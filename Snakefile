@@ -24,6 +24,9 @@ DRAWING += [*sorted(Path("data").rglob("*.csv")), *sorted(Path("data").rglob("*.
 
 RUNS = expand(f"{OUT}/runs/{{case}}/summary.json", case=CASES)
 SANDSTONE = [run for run in RUNS if "/sandstone_" in run]
+DRAWN = ["hole_r25.0", "hole_r16.3", "hole_r06.4"]  # of the paper's Figs 13 and 14
+HOLES = [run for run in RUNS if "/hole_" in run]
+INITIATION = [f"{OUT}/tables/hole_initiation.csv", *HOLES]  # made once, read by the others
 CURVES = expand(BENCH, rock=ROCKS, test="triaxial")
 STIFF = expand(BENCH, rock="sandstone", test="stiff_confinement")
 TABLES = {
@@ -37,10 +40,15 @@ TABLES = {
     "kirsch": [run for run in RUNS if "/kirsch" in run],
     "run_time": RUNS,
     **{"cracks": RUNS, "bands": RUNS, "punch": RUNS},
+    **{"hole_initiation": HOLES, "size_effect": INITIATION, "hole_fits": INITIATION},
+    "hole_checks": ["reports/bands.csv", *INITIATION],
 }
 COMPARED = {
     "punch": [run for run in RUNS if "/punch_" in run],
     "fracture_series": [run for run in RUNS if "/sandstone_soft_p" in run],
+    "hole_gauges": [run for run in HOLES if "/hole_r25.0/" in run],
+    "hole_patterns": [run for run in HOLES if run.split("/")[-2] in DRAWN],
+    "size_effect": INITIATION if HOLES else [],
 }
 FIGURES = expand(
     f"{OUT}/figures/{{kind}}_{{case}}.svg",

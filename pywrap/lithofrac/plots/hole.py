@@ -194,7 +194,8 @@ def draw_stage(axes: Axes, run: HoleRun, event: Event) -> None:
                        fontweight="normal", fontsize=8)  # fmt: skip
     else:
         row = min(int(np.searchsorted(run.times, event.time_s)) + 1, len(run.times) - 1)
-        axes.set_title(f"{event.zone}\n{event.stress:.1f} MPa", fontsize=8)
+        late = f", {event.note}" if event.note else ""
+        axes.set_title(f"{event.zone}\n{event.stress:.1f} MPa{late}", fontsize=8)
     cracks = run.run.cracks
     cracks = cracks[cracks["time_s"] <= run.times[row]]
     for mode, (_, colour) in MODES.items():

@@ -74,9 +74,10 @@ def draw_runs(axes: Axes, table: pd.DataFrame) -> None:
                 yerr=[mean - similar["min_MPa"], similar["max_MPa"] - mean],
                 fmt=mark, color=colour, ms=4.5, elinewidth=1.0, capsize=2.5, zorder=4,
             )  # fmt: skip
-            law = fit_size_law(similar["radius_mm"], mean)
+            whole = similar[similar["found"] == similar["runs"]]
+            law = fit_size_law(whole["radius_mm"], whole["mean_MPa"])
             if law is not None:
-                radius = np.linspace(similar["radius_mm"].min(), axes.get_xlim()[1], 200)
+                radius = np.linspace(whole["radius_mm"].min(), axes.get_xlim()[1], 200)
                 axes.plot(radius, law.at(radius), "--", color=colour, lw=0.9, zorder=3)
         for series, (other, _) in OTHERS.items():
             rest = own[own["series"] == series]
@@ -90,7 +91,7 @@ def draw_theory(axes: Axes, zone: str, rock: Material | None, end: float) -> Non
     """Lines of the theories that say something of a zone."""
     if rock is None:
         return
-    radius = np.geomspace(0.5, end, 40)
+    radius = np.geomspace(0.5, end, 60)
     said = [predicted(zone, rock, value) for value in radius]
     for field, dash, words in THEORY:
         if zone in words:

@@ -26,6 +26,9 @@ FIGURES = {
     "sandstone.png": "Where the specimens failed: plastic strain at the end",
     "punch.svg": "Stress under the strip punch against axial strain, compare Fig. 6",
     "fracture_series.svg": "Cracks in sandstone blocks under soft pressure, compare Fig. 11",
+    "hole_patterns.svg": "Cracks about a hole right after initiation, compare Fig. 14",
+    "hole_gauges.svg": "Axial stress against strain of gauges about a hole, compare Fig. 15",
+    "size_effect.svg": "Initiation stress against hole radius, compare Fig. 16",
 }
 CRACKS = {
     "fractures": "cracks on the deformed mesh, by mode and by time",

@@ -89,6 +89,15 @@ def test_fit_needs_four_radii(make_hole, data_folder):
     assert set(table["note"]) == {"fewer than 4 radii"}
 
 
+def test_radius_at_which_a_realisation_stays_whole_is_left_out_of_the_fit(make_hole, data_folder):
+    radii = (3.2, 6.4, 12.7, 25.0)
+    folders = [make_hole(f"hole_r{r:04.1f}", radius_mm=r, cracks=[TENSILE]) for r in radii]
+    keys = {"zone": "primary", "criterion": "crack"}
+    assert cell(hole_fits(folders, data_folder), "points", **keys) == 4
+    folders.append(make_hole("hole_r03.2@seed2", radius_mm=3.2))
+    assert cell(hole_fits(folders, data_folder), "points", **keys) == 3
+
+
 def test_equal_null_runs_hold_and_different_ones_do_not(make_hole, data_folder):
     same = [make_hole(f"hole_null_r{r:04.1f}", radius_mm=r, cracks=[TENSILE]) for r in (1.6, 6.4)]
     table = hole_checks([BANDS, *same], data_folder)
