@@ -1,4 +1,7 @@
-"""Strip punch: stress against strain at several fracture energies (Klerck 2004, Fig. 6)."""
+"""Strip punch: stress against strain at several fracture energies (Klerck 2004, Fig. 6).
+
+Stages A to D are marked on one curve of each panel: that of the discrete run, if there is one.
+"""
 
 from itertools import cycle
 from pathlib import Path
@@ -6,7 +9,9 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from lithofrac.analysis.punch import note
 from lithofrac.analysis.runs import Run, find_runs
+from lithofrac.analysis.stages import find_stages
 from lithofrac.analysis.tables import NOT_DIGITISED
 from lithofrac.data import load_curves
 from lithofrac.plots import style
@@ -26,6 +31,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     drawn, axes = style.new_figure(1, len(panels), height=4.2)
     for panel, (number, title, own) in zip(axes[0], panels, strict=True):
         draw_runs(panel, own)
+        mark_stages(panel, next((run for run in own if run.discrete), own[0]))
         curves = load_curves(data, number)
         for marker, curve in zip(SERIES, curves, strict=False):
             draw_points(panel, curve, marker)
@@ -49,6 +55,23 @@ def draw_runs(axes: Axes, runs: list[Run]) -> None:
     for run in runs:
         if run.discrete:
             _draw(axes, run, style.RED, "-", "discrete")
+
+
+def mark_stages(axes: Axes, run: Run) -> None:
+    """Write the letters of the stages beside a curve, one for those that coincide."""
+    strain, stress = run.history["axial_strain"], run.history["axial_stress_MPa"]
+    stages = find_stages(strain, stress)
+    letters: dict[int, str] = {}
+    for letter in "abcd":
+        row = getattr(stages, letter)
+        if row is not None:
+            letters[row] = ", ".join(filter(None, [letters.get(row), letter.upper()]))
+    for row, text in letters.items():
+        at = (100.0 * strain[row], stress[row])
+        axes.plot(*at, "o", ms=4, color=style.BLACK, zorder=5)
+        axes.annotate(text, at, (5, 5), textcoords="offset points", weight="bold", zorder=6)
+    if note(stages):
+        style.badge(axes, f"{run.name}: {note(stages)}", "center right")
 
 
 def _draw(axes: Axes, run: Run, colour, dash: str, kind: str) -> None:

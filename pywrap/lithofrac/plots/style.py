@@ -79,11 +79,11 @@ def badge(axes: Axes, text: str, corner: str = "lower right") -> None:
     vertical, horizontal = corner.split()
     axes.text(
         {"left": 0.03, "right": 0.97}[horizontal],
-        {"lower": 0.04, "upper": 0.96}[vertical],
+        {"lower": 0.04, "center": 0.5, "upper": 0.96}[vertical],
         text,
         transform=axes.transAxes,
         ha=horizontal,
-        va={"lower": "bottom", "upper": "top"}[vertical],
+        va={"lower": "bottom", "center": "center", "upper": "top"}[vertical],
         fontsize=8.0,
         color=BLACK,
         zorder=10,

@@ -74,3 +74,12 @@ def test_digitised_curve_of_its_figure_replaces_the_note(runs, digitise):
     both, alone = punch.figure(runs, data).axes
     assert BADGE not in [text.get_text() for text in both.findobj(Text)]
     assert BADGE in [text.get_text() for text in alone.findobj(Text)]
+
+
+def test_stages_are_lettered_on_the_discrete_curve_and_lacking_ones_are_said(runs, data_folder):
+    """The curve falls once, to its residual: B and D are one point, and there is no C."""
+    for panel in punch.figure(runs, data_folder).axes:
+        words = [text.get_text() for text in panel.findobj(Text)]
+        assert "A" in words and "B, D" in words and "C" not in words
+    both = punch.figure(runs, data_folder).axes[0]
+    assert "punch_discrete: no regain" in [text.get_text() for text in both.findobj(Text)]
