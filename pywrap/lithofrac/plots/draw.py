@@ -12,13 +12,16 @@ from lithofrac.data import DataError
 from lithofrac.plots import (
     energy,
     events,
+    evolution,
     fractures,
     gallery,
     measured,
     mesh,
     punch,
+    punch_patterns,
     sandstone,
     single_element,
+    stiffness,
     style,
 )
 
@@ -26,14 +29,17 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "single_element": single_element.figure,
     "stress_strain": sandstone.stress_strain,
     "strength": sandstone.strength,
+    "stiffness_sweep": stiffness.figure,
     "measured": measured.figure,
     "mesh": mesh.figure,
     "energy": energy.figure,
     "gallery": gallery.figure,
     "fractures": fractures.figure,
     "fracture_series": fractures.series,
+    "fracture_evolution": evolution.figure,
     "events": events.figure,
     "punch": punch.figure,
+    "punch_patterns": punch_patterns.figure,
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "single_element": tables.single_element,
