@@ -7,6 +7,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from lithofrac.analysis import discrete, options, results, tables
+from lithofrac.analysis.claims import claims
 from lithofrac.analysis.punch import punch as punch_table
 from lithofrac.data import DataError
 from lithofrac.plots import (
@@ -55,6 +56,7 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "bands": discrete.bands,
     "punch": punch_table,
     "results": results.verdicts,
+    "claims": claims,
 }
 FORMATS = (".svg", ".png", ".pdf")
 

@@ -1,0 +1,45 @@
+"""Cracks around a hole by zone: primary, remote, sidewall (Klerck 2004, Fig. 12a).
+
+The hole is centred at the origin, the load runs along y.
+"""
+
+import numpy as np
+import pandas as pd
+
+from lithofrac.analysis.bands import angle_to_axis
+from lithofrac.analysis.runs import Run
+
+REMOTE_DEG = (20.0, 70.0)  # from the load axis, as the fan of gauges
+REMOTE_RADII = (1.3, 3.0)  # over R
+SIDEWALL_RADII = 2.0  # over R: what opens further out is no breakout
+
+
+def zoned_cracks(run: Run) -> pd.DataFrame:
+    """Cracks of a run in the order of opening, with where they stand and the stress then.
+
+    Columns beside those of `cracks.parquet`: `radius` of the middle over R, `side` (-1 left, 1
+    right), `zone` (primary, remote, sidewall, or empty), `stress_MPa` on the block.
+    """
+    table, radius = run.cracks, hole_radius(run)
+    middle = 0.5 * np.column_stack(
+        [table["x1_mm"] + table["x2_mm"], table["y1_mm"] + table["y2_mm"]]
+    )
+    far, angle = np.linalg.norm(middle, axis=1) / radius, angle_to_axis(middle)
+    low, high = REMOTE_DEG
+    remote = (angle >= low) & (angle <= high)
+    remote &= (far >= REMOTE_RADII[0]) & (far <= REMOTE_RADII[1])
+    zone = np.select(
+        [angle < low, remote, (angle > high) & (far <= SIDEWALL_RADII)],
+        ["primary", "remote", "sidewall"],
+        "",
+    )
+    history = run.history
+    stress = np.interp(table["time_s"], history["time_s"], history["axial_stress_MPa"])
+    return table.assign(
+        radius=far, side=np.where(middle[:, 0] < 0.0, -1, 1), zone=zone, stress_MPa=stress
+    )
+
+
+def hole_radius(run: Run) -> float:
+    """Radius of the hole [mm]."""
+    return float(run.case["scene"]["hole_radius_mm"])
