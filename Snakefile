@@ -37,10 +37,23 @@ TABLES = {
     "kirsch": [run for run in RUNS if "/kirsch" in run],
     "run_time": RUNS,
     **{"cracks": RUNS, "bands": RUNS, "punch": RUNS},
+    "claims": ["reports/claims_bands.csv", *RUNS],
 }
+TABLES["claims"] += [
+    f"{OUT}/tables/{name}.csv"
+    for name in ("hole_initiation", "hole_fits")
+    if name in TABLES
+]
 COMPARED = {
     "punch": [run for run in RUNS if "/punch_" in run],
+    "punch_patterns": [run for run in RUNS if "/punch_" in run],
     "fracture_series": [run for run in RUNS if "/sandstone_soft_p" in run],
+    "stiffness_sweep": [
+        run for run in RUNS if "/sandstone_plane" in run or "/sandstone_soft" in run
+    ],
+    "fracture_evolution": [
+        run for run in RUNS if "/sandstone_plane_strain_p10/" in run
+    ],
 }
 FIGURES = expand(
     f"{OUT}/figures/{{kind}}_{{case}}.svg",
