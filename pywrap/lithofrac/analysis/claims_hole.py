@@ -10,7 +10,6 @@ import numpy as np
 import pandas as pd
 from scipy.stats import spearmanr
 
-from lithofrac.analysis.bands import near_axis_share
 from lithofrac.analysis.claim_parts import (
     CannotCheckError,
     Check,
@@ -20,7 +19,7 @@ from lithofrac.analysis.claim_parts import (
     largest,
     smallest,
 )
-from lithofrac.analysis.hole_cracks import hole_radius, zoned_cracks
+from lithofrac.analysis.hole_cracks import direction_deg, hole_radius, zoned_cracks
 from lithofrac.analysis.runs import Run
 
 MAIN = re.compile(r"hole_r\d+\.\d(@seed\d+)?")  # blocks similar at every radius
@@ -78,13 +77,17 @@ def _cracked(source: Source, cases: re.Pattern, zone: str) -> dict[str, pd.DataF
     return tables
 
 
-def _parallel(zone: str):
-    def measures(source: Source) -> dict[str, Value]:
-        tables = _cracked(source, MAIN, zone)
-        share = near_axis_share(pd.concat(tables.values()))
-        return {"near_axis": Value(100.0 * share, f"{len(tables)} runs")}
+def _primary_parallel(source: Source) -> dict[str, Value]:
+    tables = _cracked(source, MAIN, "primary")
+    return {"direction": Value(direction_deg(pd.concat(tables.values())), f"{len(tables)} runs")}
 
-    return measures
+
+def _remote_parallel(source: Source) -> dict[str, Value]:
+    """Each side by itself: cracks that lean to both sides would have an upright mean."""
+    tables = pd.concat(_cracked(source, MAIN, "remote").values())
+    sides = {-1: "left", 1: "right"}
+    angles = {sides[side]: direction_deg(table) for side, table in tables.groupby("side")}
+    return {"direction": largest(angles)}
 
 
 def _place(source: Source) -> dict[str, Value]:
@@ -204,8 +207,8 @@ def _below(zone: str):
 GAUGES, SIZE, STAGES = "hole_gauges.svg", "size_effect.svg", "hole_patterns.svg"
 HOLE = {
     "hole_order": Check(_order, GAUGES),
-    "hole_primary_parallel": Check(_parallel("primary"), STAGES),
-    "hole_remote_parallel": Check(_parallel("remote"), STAGES),
+    "hole_primary_parallel": Check(_primary_parallel, STAGES),
+    "hole_remote_parallel": Check(_remote_parallel, STAGES),
     "hole_remote_place": Check(_place, STAGES),
     "hole_remote_growth": Check(_growth, STAGES),
     "hole_remote_apart": Check(_apart, STAGES),

@@ -40,6 +40,20 @@ def zoned_cracks(run: Run) -> pd.DataFrame:
     )
 
 
+def direction_deg(cracks: pd.DataFrame) -> float:
+    """Angle to the load axis of the mean direction of cracks, 0 to 90 degrees.
+
+    Directions have no sign, so the mean is that of doubled angles, weighted by length: a crack that
+    zigzags along element edges has the direction in which it gets on.
+    """
+    across = cracks["x2_mm"] - cracks["x1_mm"]
+    along = cracks["y2_mm"] - cracks["y1_mm"]
+    doubled = 2.0 * np.arctan2(across, along)
+    weight = cracks["length_mm"]
+    mean = np.arctan2((weight * np.sin(doubled)).sum(), (weight * np.cos(doubled)).sum())
+    return float(np.degrees(abs(mean)) / 2.0)
+
+
 def hole_radius(run: Run) -> float:
     """Radius of the hole [mm]."""
     return float(run.case["scene"]["hole_radius_mm"])

@@ -9,7 +9,7 @@ import yaml
 
 from lithofrac.analysis.claim_parts import CannotCheckError, Source
 from lithofrac.analysis.claims_hole import HOLE
-from lithofrac.analysis.hole_cracks import zoned_cracks
+from lithofrac.analysis.hole_cracks import direction_deg, zoned_cracks
 from lithofrac.analysis.runs import Run
 
 pytestmark = pytest.mark.no_core
@@ -138,7 +138,7 @@ def make_hole(make_run):
 T, C = "tensile", "compressive_dilation"
 CRACKS = [
     (0.0, 10.0, 0.0, 12.0, T, 0.2),  # primary, along the load
-    (0.0, 12.0, 2.0, 12.0, T, 0.3),  # primary, across it
+    (0.0, 12.0, 0.5**0.5, 12.0 + 0.5**0.5, T, 0.3),  # primary, at 45 degrees to it
     (12.0, 14.0, 12.0, 16.0, T, 0.5),  # remote, right, middle 19.21 mm out
     (12.0, 10.0, 12.0, 12.0, T, 0.6),  # inward of it, 16.28 mm
     (12.0, 18.0, 12.0, 20.0, T, 0.6),  # outward of it, 22.47 mm
@@ -156,11 +156,29 @@ def test_cracks_stand_in_the_zone_of_their_middle(make_hole):
     assert np.all(np.diff(table["stress_MPa"]) >= 0.0)
 
 
-def test_shares_of_cracks_are_of_their_length_in_the_zone(make_hole):
+def test_zigzag_about_the_load_axis_is_parallel_to_it():
+    def leaning(*angles):
+        x, y = np.sin(np.radians(angles)), np.cos(np.radians(angles))
+        return pd.DataFrame({"x1_mm": 0.0, "y1_mm": 0.0, "x2_mm": x, "y2_mm": y, "length_mm": 1.0})
+
+    assert direction_deg(leaning(30.0, -30.0)) == pytest.approx(0.0, abs=1e-9)
+    assert direction_deg(leaning(30.0, 210.0)) == pytest.approx(30.0)  # the same line, turned round
+    assert direction_deg(leaning(80.0, 100.0)) == pytest.approx(90.0)
+
+
+def test_direction_and_mode_are_those_of_the_length_in_the_zone(make_hole):
+    """Two pieces of the primary crack, 2 mm along the load and 1 mm at 45 degrees to it."""
     run = make_hole("hole_r25.0", CRACKS)
-    assert measured("hole_primary_parallel", runs=[run])["near_axis"] == pytest.approx(50.0)
-    assert measured("hole_remote_parallel", runs=[run])["near_axis"] == pytest.approx(100.0)
+    mean = np.degrees(np.arctan2(1.0, 2.0)) / 2.0
+    assert measured("hole_primary_parallel", runs=[run])["direction"] == pytest.approx(mean)
+    assert measured("hole_remote_parallel", runs=[run])["direction"] == pytest.approx(0.0)
     assert measured("hole_breakout", runs=[run])["compressive_share"] == pytest.approx(25.0)
+
+
+def test_remote_cracks_that_lean_to_both_sides_are_not_parallel(make_hole):
+    lean = [(12.0, 14.0, 13.0, 15.0, T, 0.5), (-12.0, 14.0, -13.0, 15.0, T, 0.5)]
+    run = make_hole("hole_r25.0", lean)
+    assert measured("hole_remote_parallel", runs=[run])["direction"] == pytest.approx(45.0)
 
 
 def test_remote_crack_begins_off_the_wall_and_grows_both_ways(make_hole):
@@ -171,7 +189,7 @@ def test_remote_crack_begins_off_the_wall_and_grows_both_ways(make_hole):
     assert growth["outward"] == pytest.approx(np.hypot(12.0, 19.0) / 10.0 - first)
     place = measured("hole_remote_place", runs=[run])
     assert place["from_wall"] == pytest.approx(first - 1.0)
-    assert place["to_tip"] == pytest.approx(np.hypot(12.0 - 2.0, 15.0 - 12.0) / 10.0)
+    assert place["to_tip"] == pytest.approx(np.hypot(12.0 - 0.5**0.5, 3.0 - 0.5**0.5) / 10.0)
 
 
 def test_sides_that_begin_within_one_percent_begin_at_once(make_hole):
