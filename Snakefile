@@ -41,7 +41,7 @@ TABLES = {
 }
 TABLES["claims"] += [
     f"{OUT}/tables/{name}.csv"
-    for name in ("hole_initiation", "hole_fits")
+    for name in ("hole_initiation", "size_effect", "hole_fits")
     if name in TABLES
 ]
 COMPARED = {

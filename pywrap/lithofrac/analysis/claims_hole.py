@@ -1,7 +1,7 @@
 """Claims on the hole in a block (Klerck 2004, section 3.3, Figs 12 to 16).
 
-Initiation stresses are those of the paper's own criterion in the table `hole_initiation`, means
-over the realisations of a mesh where not said otherwise.
+Initiation stresses are those of the paper's own criterion: of single runs from the table
+`hole_initiation`, means over the realisations of a mesh from the table `size_effect`.
 """
 
 import re
@@ -24,34 +24,38 @@ from lithofrac.analysis.runs import Run
 
 MAIN = re.compile(r"hole_r\d+\.\d(@seed\d+)?")  # blocks similar at every radius
 SHOWN = re.compile(r"hole_r25\.0(@seed\d+)?")  # the radius of Figs 14 and 15
-SERIES = "similar"  # the same in the table `hole_fits`
+SERIES = "similar"  # the same in the tables
 CRITERION, STRESS = "curvature", "initiation_MPa"
+AFTER = "after the largest stress"  # note of what begins in a block that has failed
 ZONES = ("primary", "remote", "sidewall")
 FIGURES = dict(zip(ZONES, ("16a", "16b", "16c"), strict=True))
 APART = 0.01  # relative difference of stress at which both sides do not begin at once
 
 
-def initiation(source: Source, cases: re.Pattern) -> pd.DataFrame:
-    """Rows of the paper's criterion that have a stress, of cases of a series."""
+def initiation(source: Source) -> pd.DataFrame:
+    """Rows of the paper's criterion that have a stress before the largest, R of Fig. 15."""
     table = source.table("hole_initiation")
-    chosen = table["case"].map(lambda name: cases.fullmatch(name) is not None)
-    table = table[chosen & (table["criterion"] == CRITERION)].dropna(subset=STRESS)
+    chosen = table["case"].map(lambda name: SHOWN.fullmatch(name) is not None)
+    chosen &= (table["criterion"] == CRITERION) & (table["note"] != AFTER)
+    table = table[chosen].dropna(subset=STRESS)
     if table.empty:
-        raise CannotCheckError("the table hole_initiation has no initiation of these cases")
+        raise CannotCheckError("the table hole_initiation has no initiation at R = 25 mm")
     return table
 
 
 def by_radius(source: Source, zone: str, needed: int = 3) -> pd.Series:
     """Mean initiation stress over the realisations [MPa], by rising radius [mm]."""
-    table = initiation(source, MAIN)
-    means = table[table["zone"] == zone].groupby("radius_mm")[STRESS].mean()
+    table = source.table("size_effect")
+    chosen = (table["series"] == SERIES) & (table["criterion"] == CRITERION)
+    table = table[chosen & (table["zone"] == zone)]
+    means = table.set_index("radius_mm")["mean_MPa"].dropna().sort_index()
     if len(means) < needed:
         raise CannotCheckError(f"{zone} initiation at {len(means)} of at least {needed} radii")
     return means
 
 
 def _order(source: Source) -> dict[str, Value]:
-    table = initiation(source, SHOWN).pivot_table(STRESS, "case", "zone")
+    table = initiation(source).pivot_table(STRESS, "case", "zone")
     missing = [zone for zone in ZONES if zone not in table]
     if missing:
         raise CannotCheckError(f"no {missing[0]} initiation at R = 25 mm")
@@ -60,7 +64,7 @@ def _order(source: Source) -> dict[str, Value]:
 
 
 def _bound(source: Source) -> dict[str, Value]:
-    table = initiation(source, SHOWN)
+    table = initiation(source)
     return {"largest": largest(table.groupby("zone")[STRESS].max().to_dict())}
 
 
@@ -79,7 +83,7 @@ def _cracked(source: Source, cases: re.Pattern, zone: str) -> dict[str, pd.DataF
 
 def _primary_parallel(source: Source) -> dict[str, Value]:
     tables = _cracked(source, MAIN, "primary")
-    return {"direction": Value(direction_deg(pd.concat(tables.values())), f"{len(tables)} runs")}
+    return {"direction": Value(direction_deg(pd.concat(tables.values())), f"runs: {len(tables)}")}
 
 
 def _remote_parallel(source: Source) -> dict[str, Value]:
@@ -129,7 +133,7 @@ def _apart(source: Source) -> dict[str, Value]:
     for table in tables.values():
         first = table.groupby("side")["stress_MPa"].first()
         apart.append(len(first) < 2 or first.max() > (1.0 + APART) * first.min())
-    return {"share": Value(100.0 * float(np.mean(apart)), f"{len(tables)} runs, upper half")}
+    return {"share": Value(100.0 * float(np.mean(apart)), f"runs: {len(tables)}, upper half")}
 
 
 def _breakout(source: Source) -> dict[str, Value]:
@@ -175,11 +179,11 @@ def _size(source: Source) -> dict[str, Value]:
 def _falls(zone: str):
     def measures(source: Source) -> dict[str, Value]:
         means = by_radius(source, zone)
-        if means.nunique() == 1:
-            return {"correlation": Value(0.0, "the same at every radius")}
-        rank = float(spearmanr(means.index, means).statistic)
+        same = means.nunique() == 1
+        rank = 0.0 if same else float(spearmanr(means.index, means).statistic)
         note = f"{means.iloc[0]:.1f} to {means.iloc[-1]:.1f} MPa over {len(means)} radii"
-        return {"correlation": Value(rank, note)}
+        ratio = float(means.iloc[-1] / means.iloc[0])
+        return {"correlation": Value(rank, note), "ratio": Value(ratio)}
 
     return measures
 

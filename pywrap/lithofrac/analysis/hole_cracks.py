@@ -11,11 +11,14 @@ from lithofrac.analysis.runs import Run
 
 REMOTE_DEG = (20.0, 70.0)  # from the load axis, as the fan of gauges
 REMOTE_RADII = (1.3, 3.0)  # over R
-SIDEWALL_RADII = 2.0  # over R: what opens further out is no breakout
+NEAR = {"primary": 3.0, "sidewall": 1.3}  # over R: what opens further out is of neither
 
 
 def zoned_cracks(run: Run) -> pd.DataFrame:
     """Cracks of a run in the order of opening, with where they stand and the stress then.
+
+    Primary and remote fractures open in tension (section 3.3); what compression opens where
+    they stand belongs to the shear bands of the failing block, and to no zone.
 
     Columns beside those of `cracks.parquet`: `radius` of the middle over R, `side` (-1 left, 1
     right), `zone` (primary, remote, sidewall, or empty), `stress_MPa` on the block.
@@ -26,10 +29,15 @@ def zoned_cracks(run: Run) -> pd.DataFrame:
     )
     far, angle = np.linalg.norm(middle, axis=1) / radius, angle_to_axis(middle)
     low, high = REMOTE_DEG
+    tensile = (table["mode"] == "tensile").to_numpy()
     remote = (angle >= low) & (angle <= high)
     remote &= (far >= REMOTE_RADII[0]) & (far <= REMOTE_RADII[1])
     zone = np.select(
-        [angle < low, remote, (angle > high) & (far <= SIDEWALL_RADII)],
+        [
+            tensile & (angle < low) & (far <= NEAR["primary"]),
+            tensile & remote,
+            (angle > high) & (far <= NEAR["sidewall"]),
+        ],
         ["primary", "remote", "sidewall"],
         "",
     )
