@@ -34,6 +34,7 @@ from lithofrac.analysis.stages import (
 
 LOWEST, HIGHER = "punch_gf60", ("punch_gf300", "punch_gf1200")
 DISCRETE, TENSION = "punch_discrete", "punch_tension_only"
+VARIED = tuple(f"{TENSION}_{what}" for what in ("coarse", "gf300", "intra"))
 
 
 def _curve(run: Run) -> tuple[np.ndarray, np.ndarray]:
@@ -179,7 +180,17 @@ def _time_step(source: Source) -> dict[str, Value]:
 
 
 def _tension_only(source: Source) -> dict[str, Value]:
-    return {"peak": Value(float(_curve(source.run(TENSION))[1].max()))}
+    peak = float(_curve(source.run(TENSION))[1].max())
+    peaks = {
+        name: float(_curve(source.runs[name])[1].max()) for name in VARIED if name in source.runs
+    }
+    if not peaks:
+        return {"peak": Value(peak), "spread": Value(float("nan"), "no run to compare")}
+    words = ", ".join(
+        f"{name.removeprefix(TENSION + '_')} {v:.0f} MPa" for name, v in peaks.items()
+    )
+    moved = max(abs(value / peak - 1.0) for value in peaks.values())
+    return {"peak": Value(peak), "spread": Value(100.0 * moved, words)}
 
 
 def _tension_excess(source: Source) -> dict[str, Value]:

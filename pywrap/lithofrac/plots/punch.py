@@ -18,6 +18,9 @@ from lithofrac.plots import style
 from lithofrac.plots.sandstone import SERIES, draw_curve, draw_points
 
 DASHES = ("-", "--", ":")  # continuum by rising fracture energy, told apart in grey as well
+DISCRETE = (
+    (style.RED, "-"), (style.PURPLE, "--"), (style.BLACK, ":"), (style.SKY, "-."),
+)  # in the order of the suite: the run itself, then its variants  # fmt: skip
 
 
 def figure(inputs: list[Path], data: Path) -> Figure:
@@ -37,7 +40,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
             draw_points(panel, curve, marker)
         panel.set(title=title, xlabel="axial strain [%]", ylabel="punch stress [MPa]")
         panel.set_xlim(0, None)
-        panel.set_ylim(0, 1.45 * panel.get_ylim()[1])  # room for the legend
+        panel.set_ylim(0, 1.5 * panel.get_ylim()[1])  # room for the legend
         panel.legend(loc="upper left", title="run, Gf: first peak", alignment="left")
         if not any(curve.sheet.origin == "experiment" for curve in curves):
             style.badge(panel, NOT_DIGITISED)
@@ -45,16 +48,20 @@ def figure(inputs: list[Path], data: Path) -> Figure:
 
 
 def draw_runs(axes: Axes, runs: list[Run]) -> None:
-    """Draw the curves and their first peaks: continuum by fracture energy, discrete in red."""
+    """Draw the curves and their first peaks: continuum by fracture energy, discrete in red.
+
+    Of several discrete runs each has its name; the first is the one that the others vary.
+    """
     continuum = sorted(
         (run for run in runs if not run.discrete), key=lambda run: run.rock.fracture_energy
     )
     shades = style.confinement_colours([run.rock.fracture_energy for run in continuum])
     for run, dash in zip(continuum, cycle(DASHES), strict=False):
         _draw(axes, run, shades[run.rock.fracture_energy], dash, "continuum")
-    for run in runs:
-        if run.discrete:
-            _draw(axes, run, style.RED, "-", "discrete")
+    discrete = [run for run in runs if run.discrete]
+    for run, (colour, dash) in zip(discrete, cycle(DISCRETE), strict=False):
+        kind = "discrete" if run is discrete[0] else run.name.removeprefix("punch_")
+        _draw(axes, run, colour, dash, kind)
 
 
 def mark_stages(axes: Axes, run: Run) -> None:

@@ -131,6 +131,19 @@ def test_cracks_of_tension_alone_are_split_by_place(table_of, make_punch_run):
     assert near == pytest.approx(100.0 * np.sqrt(2.0) / whole, rel=1e-3)
 
 
+def test_spread_of_the_peak_is_that_of_the_variants(table_of, make_punch_run):
+    base = make_punch_run("punch_tension_only", compression=False, cracks=CRACKS)
+    row = table_of(base).loc["punch_tension_only"]
+    assert row["note"] == "no run to compare"
+    other = make_punch_run("punch_tension_only_coarse", compression=False, cracks=CRACKS)
+    history = pd.read_parquet(other / "history.parquet")
+    history["axial_stress_MPa"] *= 1.25
+    history.to_parquet(other / "history.parquet")
+    row = table_of(base, other).loc["punch_tension_only"]
+    assert values(row["value"])[1] == pytest.approx(25.0)
+    assert row["note"].startswith("coarse ")
+
+
 def test_strengths_of_sandstone_are_compared_at_one_confinement(table_of, make_run):
     runs = [
         make_run("sandstone_triaxial_p00"),
