@@ -27,7 +27,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     """Fig. 6a, the continuum and the discrete run; Fig. 6b, tension alone, where it was run."""
     runs = find_runs(inputs)
     panels = [
-        ("6a", "compression and tension", [run for run in runs if run.rock.compression]),
+        ("6a", "with compression", [run for run in runs if run.rock.compression]),
         ("6b", "tension alone", [run for run in runs if not run.rock.compression]),
     ]
     panels = [panel for panel in panels if panel[2]]
@@ -43,7 +43,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
         panel.set_ylim(0, 1.5 * panel.get_ylim()[1])  # room for the legend
         panel.legend(loc="upper left", title="run, Gf: first peak", alignment="left")
         if not any(curve.sheet.origin == "experiment" for curve in curves):
-            style.badge(panel, NOT_DIGITISED)
+            style.badge(panel, NOT_DIGITISED, "above right")
     return drawn
 
 
@@ -78,7 +78,7 @@ def mark_stages(axes: Axes, run: Run) -> None:
         axes.plot(*at, "o", ms=4, color=style.BLACK, zorder=5)
         axes.annotate(text, at, (5, 5), textcoords="offset points", weight="bold", zorder=6)
     if note(stages):
-        style.badge(axes, f"{run.name}: {note(stages)}", "center right")
+        style.badge(axes, f"{run.name}: {note(stages)}", "lower right")
 
 
 def _draw(axes: Axes, run: Run, colour, dash: str, kind: str) -> None:
