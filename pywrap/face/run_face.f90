@@ -43,7 +43,7 @@ contains
       integer(c_int), intent(in) :: triangles(3, n_elements)   !! counter-clockwise
       integer(c_int), intent(in) :: body(n_elements)
       integer(c_int), intent(in) :: axisymmetric               !! 0 or 1
-      real(c_double), intent(in) :: constants(5, n_bodies)     !! as `new_rock`
+      real(c_double), intent(in) :: constants(6, n_bodies)     !! as `new_rock`
       real(c_double), intent(in) :: tables(4, n_knots, n_bodies)
       integer(c_int), intent(in) :: knots(n_bodies)            !! knots in use of each table
       integer(c_int), intent(in) :: options(4, n_bodies)

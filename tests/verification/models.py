@@ -20,6 +20,7 @@ class Elastic:
     density: float = 2700.0
     tensile_strength: float = 0.0
     fracture_energy: float = 0.0
+    reference_width: float = 0.0
     band_width: str = "sqrt_2A"
 
     @property
