@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field, PrivateAttr, StringConstraints, ValidationError
+from pydantic import Field, PrivateAttr, StringConstraints, ValidationError, model_validator
 
 from lithofrac.config.base import Section
 from lithofrac.config.case import Case, check_case
@@ -25,6 +25,9 @@ class Entry(Section):
     """Case file, relative to the suite file."""
     set: dict[str, Any] = Field(default_factory=dict)
     """Dotted keys of the case file and the values that replace theirs."""
+    twin: Name | None = None
+    """Case of the suite that this one is a variant of: held against it in the table `variants`, and
+    left out of the figures of its family."""
 
 
 class Suite(Section):
@@ -34,6 +37,22 @@ class Suite(Section):
     cases: dict[Name, Entry] = Field(min_length=1)
     """Name of a case, which is also the name of its results folder -> what it is."""
     _file: Path = PrivateAttr(default=Path())
+
+    @model_validator(mode="after")
+    def _twins_are_cases(self):
+        for name, entry in self.cases.items():
+            if entry.twin is not None and (entry.twin not in self.cases or entry.twin == name):
+                others = [known for known in self.cases if known != name]
+                raise ValueError(
+                    f"cases.{name}.twin = {entry.twin}: expected another case of the suite, "
+                    f"{suggestion(entry.twin, others)}"
+                )
+        return self
+
+    @property
+    def variants(self) -> dict[str, str]:
+        """Name of each variant -> name of its twin."""
+        return {name: entry.twin for name, entry in self.cases.items() if entry.twin}
 
     def case(self, name: str, overrides: Mapping | None = None) -> Case:
         """The checked case of that name; `NAME@seed2` is another mesh of case NAME.
