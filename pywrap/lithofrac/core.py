@@ -98,7 +98,7 @@ class Sizes:
     opened_edges: int
     cracks: int  # failed nodes that have cracked
     fallbacks: int  # edges taken where a cut was planned
-    closed: int  # times that a failed node had no way for a crack
+    closed: int  # failed nodes that had no way for a crack when they were looked at
     most_resets: int  # of one element
     contact_pairs: int  # of now
 
