@@ -102,13 +102,7 @@ def element_path(material, nodes, path, axisymmetric=False, band_width=1e-3):
     values, forces, dissipated, critical = kernels.element_path(
         nodes.T,
         int(axisymmetric),
-        [
-            material.young,
-            material.poisson,
-            material.density,
-            material.tensile_strength,
-            material.fracture_energy,
-        ],
+        kernels.pack(material).constants,
         material.table,
         material.options,
         band_width,

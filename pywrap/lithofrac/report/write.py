@@ -16,6 +16,7 @@ TITLES = {
     "results": "Results",
     "cracks": "Discrete cracks: what opened and what it cost",
     "bands": "Angles of bands and cracks to the load axis",
+    "variants": "What the open choices change",
     "errors": "Distance from digitised curves",
     "run_time": "Run time and energy error",
 }  # tables of the whole report, in order; the others stand in the sheets
@@ -26,6 +27,7 @@ FIGURES = {
     "sandstone.png": "Where the specimens failed: plastic strain at the end",
     "punch.svg": "Stress under the strip punch against axial strain, compare Fig. 6",
     "fracture_series.svg": "Cracks in sandstone blocks under soft pressure, compare Fig. 11",
+    "variants.svg": "What the open choices change: stress-strain curves beside their twins",
 }
 CRACKS = {
     "fractures": "cracks on the deformed mesh, by mode and by time",
