@@ -7,7 +7,7 @@ from lithofrac.config import load_suite
 SUITE = config.get("suite", "configs/suite.yaml")
 OUT = config.get("out", "out")
 ENTRIES = load_suite(SUITE)
-CASES = {name: ENTRIES.case(name).resolved() for name in ENTRIES.cases}
+CASES = {name: ENTRIES.case(name).resolved() for name in ENTRIES.names}
 SCENES = {case["title"]: name for name, case in reversed(CASES.items())}.values()
 VARIANTS = ENTRIES.variants  # name -> name of its twin
 DISCRETE = [name for name, case in CASES.items() if case["fracture"]["mode"] != "off"]

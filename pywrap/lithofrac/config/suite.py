@@ -25,6 +25,8 @@ class Entry(Section):
     """Case file, relative to the suite file."""
     set: dict[str, Any] = Field(default_factory=dict)
     """Dotted keys of the case file and the values that replace theirs."""
+    realisations: int = Field(default=1, ge=1, le=1000)
+    """Meshes of equal density that are run: NAME, NAME@seed2, NAME@seed3 and so on."""
     twin: Name | None = None
     """Case of the suite that this one is a variant of: held against it in the table `variants`, and
     left out of the figures of its family."""
@@ -48,6 +50,15 @@ class Suite(Section):
                     f"{suggestion(entry.twin, others)}"
                 )
         return self
+
+    @property
+    def names(self) -> list[str]:
+        """All runs of the suite in the order of its cases, each realisation by its own name."""
+        return [
+            name if seed == 1 else f"{name}@seed{seed}"
+            for name, entry in self.cases.items()
+            for seed in range(1, entry.realisations + 1)
+        ]
 
     @property
     def variants(self) -> dict[str, str]:
