@@ -24,12 +24,13 @@ COLUMNS = [
     "peak_stress_MPa",
     "strain_at_peak_percent",
     "residual_stress_MPa",
-    "work_after_peak_MPa",
+    "work_after_peak_MJ_m3",
     "cracks",
     "crack_length_mm",
     "near_axis_percent",
     "tensile_percent",
     "fragments",
+    "reset_J",
     "energy_residual",
     "core_seconds",
     "peak_change_percent",
@@ -107,7 +108,7 @@ def residual_stress(run: Run) -> float:
 
 
 def work_after_peak(run: Run) -> float:
-    """Area below the curve from its peak to its end [MPa, which is MJ/m3]; NaN without a peak."""
+    """Area below the curve from its peak to its end [MJ/m3]; NaN without a peak."""
     if run.peak is None:
         return float("nan")
     after = run.history.iloc[run.peak.index :]
@@ -129,7 +130,7 @@ def _numbers(run: Run) -> dict:
         "peak_stress_MPa": peak.stress if peak else nan,
         "strain_at_peak_percent": 100.0 * peak.strain if peak else nan,
         "residual_stress_MPa": residual_stress(run),
-        "work_after_peak_MPa": work_after_peak(run),
+        "work_after_peak_MJ_m3": work_after_peak(run),
         "energy_residual": run.summary["energy_residual"],
         "core_seconds": run.summary["core_seconds"],
     }
@@ -143,6 +144,7 @@ def _numbers(run: Run) -> dict:
         "near_axis_percent": 100.0 * near_axis_share(run.cracks),
         "tensile_percent": 100.0 * tensile / length.sum() if length.sum() > 0.0 else nan,
         "fragments": run.summary["fragments"],
+        "reset_J": float(run.energy["reset_J"].iloc[-1]),
     }
 
 
@@ -155,7 +157,7 @@ def _differences(run: Run, twin: Run) -> dict:
         "peak_change_percent": _change(own, other, "peak_stress_MPa"),
         "strain_at_peak_change_percent": _change(own, other, "strain_at_peak_percent"),
         "residual_change_percent": _change(own, other, "residual_stress_MPa"),
-        "work_change_percent": _change(own, other, "work_after_peak_MPa"),
+        "work_change_percent": _change(own, other, "work_after_peak_MJ_m3"),
         "crack_length_change_mm": own.get("crack_length_mm", np.nan)
         - other.get("crack_length_mm", np.nan),
         "curve_rms_percent": 100.0 * compare(*curves[0], *curves[1]).rms_relative,

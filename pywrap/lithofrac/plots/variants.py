@@ -12,7 +12,7 @@ from lithofrac.plots import style
 from lithofrac.plots.sandstone import draw_curve
 
 COLUMNS = 3
-PANEL_HEIGHT = 1.75  # inches
+PANEL_HEIGHT = 1.5  # inches
 LEGEND_HEIGHT = 0.45  # inches
 
 
@@ -54,5 +54,5 @@ def draw_pair(axes: Axes, twin: Run, run: Run) -> None:
     axes.lines[0].set_linewidth(2.2)
     draw_curve(axes, run, style.RED)
     choice = "\n".join(changed_keys(run, twin))
-    axes.set_title(f"{twin.name}\n{choice}", fontsize=7.5)
+    axes.set_title(f"{twin.name}\n{choice}", fontsize=7.0)
     axes.set(xlim=(0, None), ylim=(0, None))
