@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from lithofrac.analysis import discrete, options, results, tables
 from lithofrac.analysis.claims import claims
 from lithofrac.analysis.punch import punch as punch_table
+from lithofrac.analysis.variants import variants as variants_table
 from lithofrac.data import DataError
 from lithofrac.plots import (
     energy,
@@ -24,6 +25,7 @@ from lithofrac.plots import (
     single_element,
     stiffness,
     style,
+    variants,
 )
 
 FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
@@ -41,6 +43,7 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "events": events.figure,
     "punch": punch.figure,
     "punch_patterns": punch_patterns.figure,
+    "variants": variants.figure,
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "single_element": tables.single_element,
@@ -55,6 +58,7 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "cracks": discrete.cracks,
     "bands": discrete.bands,
     "punch": punch_table,
+    "variants": variants_table,
     "results": results.verdicts,
     "claims": claims,
 }

@@ -18,6 +18,7 @@ TITLES = {
     "results": "Results",
     "cracks": "Discrete cracks: what opened and what it cost",
     "bands": "Angles of bands and cracks to the load axis",
+    "variants": "What the open choices change",
     "errors": "Distance from digitised curves",
     "run_time": "Run time and energy error",
 }  # tables of the whole report, in order; the others stand in the sheets
@@ -31,6 +32,7 @@ FIGURES = {
     "punch_patterns.svg": "What forms beneath the strip punch, compare Fig. 7",
     "fracture_evolution.svg": "Cracks in sandstone in plane strain as they grow, compare Fig. 11a",
     "fracture_series.svg": "Cracks in sandstone blocks under soft pressure, compare Fig. 11",
+    "variants.svg": "What the open choices change: stress-strain curves beside their twins",
 }
 CRACKS = {
     "fractures": "cracks on the deformed mesh, by mode and by time",
