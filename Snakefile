@@ -9,6 +9,7 @@ OUT = config.get("out", "out")
 ENTRIES = load_suite(SUITE)
 CASES = {name: ENTRIES.case(name).resolved() for name in ENTRIES.names}
 SCENES = {case["title"]: name for name, case in reversed(CASES.items())}.values()
+VARIANTS = ENTRIES.variants  # name -> name of its twin
 DISCRETE = [name for name, case in CASES.items() if case["fracture"]["mode"] != "off"]
 
 ROCKS = ["quartzite", "sandstone", "tyndall_limestone"]
@@ -23,10 +24,16 @@ DRAWING = [file for part in PARTS for file in sorted(Path(part).glob("*.py"))]
 DRAWING += [*sorted(Path("data").rglob("*.csv")), *sorted(Path("data").rglob("*.yaml"))]
 
 RUNS = expand(f"{OUT}/runs/{{case}}/summary.json", case=CASES)
-SANDSTONE = [run for run in RUNS if "/sandstone_" in run]
+PAIRED = dict.fromkeys(name for pair in VARIANTS.items() for name in pair)
+PAIRS = expand(f"{OUT}/runs/{{case}}/summary.json", case=PAIRED)
+OWN = [run for run in RUNS if run.split("/")[-2] not in VARIANTS]
+SANDSTONE = [run for run in OWN if "/sandstone_" in run]
 DRAWN = ["hole_r25.0", "hole_r16.3", "hole_r06.4"]  # of the paper's Figs 13 and 14
-HOLES = [run for run in RUNS if "/hole_" in run]
-INITIATION = [f"{OUT}/tables/hole_initiation.csv", *HOLES]  # made once, read by the others
+HOLES = [run for run in OWN if "/hole_" in run]
+INITIATION = [
+    f"{OUT}/tables/hole_initiation.csv",
+    *HOLES,
+]  # made once, read by the others
 CURVES = expand(BENCH, rock=ROCKS, test="triaxial")
 STIFF = expand(BENCH, rock="sandstone", test="stiff_confinement")
 TABLES = {
@@ -39,13 +46,26 @@ TABLES = {
     **{"zigong": [], "zigong_fit": []},
     "kirsch": [run for run in RUNS if "/kirsch" in run],
     "run_time": RUNS,
-    **{"cracks": RUNS, "bands": RUNS, "punch": RUNS},
+    **{"cracks": RUNS, "bands": RUNS, "punch": OWN},
+    "variants": [SUITE, *PAIRS],
+    "claims": ["reports/claims_bands.csv", *RUNS],
     **{"hole_initiation": HOLES, "size_effect": INITIATION, "hole_fits": INITIATION},
     "hole_checks": ["reports/bands.csv", *INITIATION],
 }
+TABLES["claims"] += [
+    f"{OUT}/tables/{name}.csv"
+    for name in ("hole_initiation", "size_effect", "hole_fits")
+    if name in TABLES
+]
 COMPARED = {
-    "punch": [run for run in RUNS if "/punch_" in run],
-    "fracture_series": [run for run in RUNS if "/sandstone_soft_p" in run],
+    "punch": [run for run in OWN if "/punch_" in run],
+    "punch_patterns": [run for run in OWN if "/punch_" in run],
+    "fracture_series": [run for run in OWN if "/sandstone_soft_p" in run],
+    "stiffness_sweep": [
+        run for run in OWN if "/sandstone_plane" in run or "/sandstone_soft" in run
+    ],
+    "fracture_evolution": [run for run in OWN if "/sandstone_plane_strain_p10/" in run],
+    "variants": [SUITE, *PAIRS] if VARIANTS else [],
     "hole_gauges": [run for run in HOLES if "/hole_r25.0/" in run],
     "hole_patterns": [run for run in HOLES if run.split("/")[-2] in DRAWN],
     "size_effect": INITIATION if HOLES else [],

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
+from punch_runs import as_punch
 
 from lithofrac.analysis.mohr_coulomb import peak_strength, residual_strength
 from lithofrac.config.material import Material
@@ -368,5 +369,16 @@ def make_hole(tmp_path):
         mesh = block_mesh(platen=False)
         mesh.save(folder / "mesh.npz")
         return folder
+
+    return made
+
+
+@pytest.fixture
+def make_punch_run(make_run):
+    """make_punch_run(name, gf=60, compression=True, cracks=None) -> folder (`punch_runs`)."""
+
+    def made(name, gf=60.0, compression=True, cracks=None):
+        folder = make_run(name, test="punch", confinement=4.5)
+        return as_punch(folder, gf, compression, cracks)
 
     return made

@@ -15,38 +15,48 @@ from lithofrac.analysis import (
     size_law,
     tables,
 )
+from lithofrac.analysis.claims import claims
 from lithofrac.analysis.punch import punch as punch_table
+from lithofrac.analysis.variants import variants as variants_table
 from lithofrac.data import DataError
 from lithofrac.plots import (
     energy,
     events,
+    evolution,
     fractures,
     gallery,
     hole,
     measured,
     mesh,
     punch,
+    punch_patterns,
     sandstone,
     single_element,
     size_effect,
+    stiffness,
     style,
+    variants,
 )
 
 FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "single_element": single_element.figure,
     "stress_strain": sandstone.stress_strain,
     "strength": sandstone.strength,
+    "stiffness_sweep": stiffness.figure,
     "measured": measured.figure,
     "mesh": mesh.figure,
     "energy": energy.figure,
     "gallery": gallery.figure,
     "fractures": fractures.figure,
     "fracture_series": fractures.series,
+    "fracture_evolution": evolution.figure,
     "events": events.figure,
     "punch": punch.figure,
     "hole_gauges": hole.gauges,
     "hole_patterns": hole.patterns,
     "size_effect": size_effect.figure,
+    "punch_patterns": punch_patterns.figure,
+    "variants": variants.figure,
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "single_element": tables.single_element,
@@ -65,7 +75,9 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "size_effect": hole_tables.size_effect,
     "hole_fits": size_law.hole_fits,
     "hole_checks": hole_checks.hole_checks,
+    "variants": variants_table,
     "results": results.verdicts,
+    "claims": claims,
 }
 FORMATS = (".svg", ".png", ".pdf")
 

@@ -12,20 +12,27 @@ from lithofrac.report.blocks import fill, has_blocks
 from lithofrac.report.markdown import to_html, to_markdown
 
 SHEETS = Path("reports", "sheets")
+GALLERY = "gallery"  # beside the sheets: the figures that are committed
+DRAWN = "drawn"  # column that names a figure
 TITLES = {
     "results": "Results",
     "cracks": "Discrete cracks: what opened and what it cost",
     "bands": "Angles of bands and cracks to the load axis",
+    "variants": "What the open choices change",
     "errors": "Distance from digitised curves",
     "run_time": "Run time and energy error",
 }  # tables of the whole report, in order; the others stand in the sheets
 FIGURES = {
     "stress_strain.svg": "Axial stress against axial strain of sandstone, compare Fig. 9",
     "strength.svg": "Strength of sandstone against confinement, compare Fig. 10",
+    "stiffness_sweep.svg": "Sandstone in plane strain at several lateral stiffnesses",
     "measured.svg": "Table 1 beside TauTona quartzite, a fitted line beside Zigong sandstone",
     "sandstone.png": "Where the specimens failed: plastic strain at the end",
     "punch.svg": "Stress under the strip punch against axial strain, compare Fig. 6",
+    "punch_patterns.svg": "What forms beneath the strip punch, compare Fig. 7",
+    "fracture_evolution.svg": "Cracks in sandstone in plane strain as they grow, compare Fig. 11a",
     "fracture_series.svg": "Cracks in sandstone blocks under soft pressure, compare Fig. 11",
+    "variants.svg": "What the open choices change: stress-strain curves beside their twins",
     "hole_patterns.svg": "Cracks about a hole right after initiation, compare Fig. 14",
     "hole_gauges.svg": "Axial stress against strain of gauges about a hole, compare Fig. 15",
     "size_effect.svg": "Initiation stress against hole radius, compare Fig. 16",
@@ -58,10 +65,11 @@ def write_report(out_dir: Path, file: Path, sheets: Path = SHEETS) -> None:
     tables = read_tables(out_dir)
     old = file.read_text(encoding="utf-8") if file.is_file() else ""
     sheet = sheets / f"{file.stem}.md"
+    committed = linked(tables, sheets.parent / GALLERY, file.parent)
     if has_blocks(old) and file.suffix == ".md" and not file.is_relative_to(out_dir):
-        text = fill(old, tables, str(file))
+        text = fill(old, committed, str(file))
     elif sheet.is_file():
-        text = fill(sheet.read_text(encoding="utf-8"), tables, str(sheet))
+        text = fill(sheet.read_text(encoding="utf-8"), committed, str(sheet))
     else:
         pictures = out_dir / "figures" if file.suffix == ".md" else None
         text = whole_report(tables, sheets, pictures, file.parent)
@@ -93,6 +101,8 @@ def whole_report(
     Figures are linked from the folder `pictures` relative to `here`; a page that is embedded
     elsewhere has none.
     """
+    if pictures is not None:
+        tables = linked(tables, pictures, here)
     parts = ["# lithofrac: report of the suite\n", provenance(tables)]
     shown = [name for name in TITLES if name in tables]
     for name in shown:
@@ -108,6 +118,19 @@ def whole_report(
                 if (pictures / name).is_file()
             ]
     return "\n".join(parts)
+
+
+def linked(tables: dict[str, pd.DataFrame], pictures: Path, here: Path) -> dict[str, pd.DataFrame]:
+    """The tables with links, relative to `here`, for the figures they name that are there."""
+
+    def link(name: str) -> str:
+        picture = pictures / str(name)
+        return f"[{name}]({os.path.relpath(picture, here)})" if picture.is_file() else name
+
+    return {
+        key: table.assign(**{DRAWN: table[DRAWN].map(link)}) if DRAWN in table else table
+        for key, table in tables.items()
+    }
 
 
 def _crack_figures(tables: dict[str, pd.DataFrame]) -> dict[str, str]:

@@ -27,10 +27,12 @@ def out(make_run, make_bench, data_folder, tmp_path):
     inputs = {
         "results": [ROOT / "reports" / "bands.csv", QUARTZITE, *bench]
         + [run / "summary.json" for run in runs],
+        "claims": [ROOT / "reports" / "claims_bands.csv", *runs],
         "single_element": bench,
         "tautona": [QUARTZITE],
         "kirsch": [],
         "hole_checks": [ROOT / "reports" / "bands.csv", *runs],
+        "variants": [ROOT / "configs" / "suite.yaml", *runs],
     }
     (tmp_path / "out" / "tables").mkdir(parents=True)
     for name in TABLES:
@@ -59,7 +61,7 @@ def test_report_shows_the_figures_that_are_there(out):
     write_report(out, out / "report.md", SHEETS)
     text = (out / "report.md").read_text()
     assert "](figures/strength.svg)" in text
-    assert "stress_strain.svg" not in text
+    assert "](figures/stress_strain.svg)" not in text
 
 
 def test_report_shows_the_figures_of_each_case_with_cracks(
@@ -125,3 +127,13 @@ def test_folder_without_tables_is_refused_and_nothing_is_written(tmp_path):
     with pytest.raises(DataError, match=r"tables: holds no \.csv"):
         write_report(tmp_path, tmp_path / "report.md", SHEETS)
     assert not list(tmp_path.iterdir())
+
+
+def test_figure_that_a_claim_names_is_linked_where_it_is_there(out):
+    link = "[punch.svg](figures/punch.svg)"
+    write_report(out, out / "report.md", SHEETS)
+    assert link not in (out / "report.md").read_text()
+    (out / "figures").mkdir()
+    (out / "figures" / "punch.svg").touch()
+    write_report(out, out / "report.md", SHEETS)
+    assert link in (out / "report.md").read_text()
