@@ -19,6 +19,7 @@ from lithofrac.analysis.claim_parts import (
     largest,
     smallest,
 )
+from lithofrac.analysis.hole import AFTER
 from lithofrac.analysis.hole_cracks import direction_deg, hole_radius, zoned_cracks
 from lithofrac.analysis.runs import Run
 
@@ -26,7 +27,6 @@ MAIN = re.compile(r"hole_r\d+\.\d(@seed\d+)?")  # blocks similar at every radius
 SHOWN = re.compile(r"hole_r25\.0(@seed\d+)?")  # the radius of Figs 14 and 15
 SERIES = "similar"  # the same in the tables
 CRITERION, STRESS = "curvature", "initiation_MPa"
-AFTER = "after the largest stress"  # note of what begins in a block that has failed
 ZONES = ("primary", "remote", "sidewall")
 FIGURES = dict(zip(ZONES, ("16a", "16b", "16c"), strict=True))
 APART = 0.01  # relative difference of stress at which both sides do not begin at once

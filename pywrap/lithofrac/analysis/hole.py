@@ -24,6 +24,7 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
+from lithofrac.analysis.hole_cracks import zoned_cracks
 from lithofrac.analysis.initiation import Kink, find_kink
 from lithofrac.analysis.runs import Run
 
@@ -32,11 +33,8 @@ CRITERIA = ("curvature", "exhaustion", "crack")
 RESOLUTION = 1e-6  # strain that a foil gauge tells apart
 USED_UP = 0.01  # share of the tensile strength that counts as none
 SOFTENED = 0.999  # share of the tensile strength below which an element has begun to soften
-BESIDE_AXIS = (20.0, 70.0)  # degrees from the load axis: primary below, sidewall above
-FAN = (1.3, 3.0)  # radii within which a crack off the axis is a remote one
-NEAR = {"primary": 3.0, "sidewall": 1.3}  # radii within which a crack belongs to the zone
 
-AFTER = "after the largest stress"  # note of an event of a block that has failed
+AFTER = "after the peak"  # note of an event of a block that has failed
 
 NAME = re.compile(
     r"^hole_(?:(?P<series>mesh1mm|block150|null|elastic)_)?r(?P<radius>\d+(\.\d+)?)"
@@ -101,6 +99,11 @@ class HoleRun:
         virgin = self.run.case["material"].get("tensile_strength_MPa")
         return {str(name): _gauge(str(name), own, virgin) for name, own in table.groupby("probe")}
 
+    @cached_property
+    def _zoned(self) -> pd.DataFrame:
+        """Cracks with the zone that each is in."""
+        return zoned_cracks(self.run)
+
     def zone(self, zone: str) -> list[Gauge]:
         """Gauges of a zone, those whose names begin as `ZONES` says."""
         return [gauge for name, gauge in self.gauges.items() if name.startswith(ZONES[zone])]
@@ -158,8 +161,7 @@ class HoleRun:
         """First crack of a zone, by where its middle lies."""
         if not self.run.discrete:
             return _none(zone, "crack", "continuum")
-        cracks = self.run.cracks
-        own = cracks[_in_zone(zone, cracks, self.radius_mm)]
+        own = self._zoned[self._zoned["zone"] == zone]
         if own.empty:
             return _none(zone, "crack", "no crack")
         moment = float(own["time_s"].iloc[0])
@@ -184,21 +186,6 @@ def _gauge(name: str, own: pd.DataFrame, virgin: float | None) -> Gauge:
     if not virgin:  # an elastic rock has none to lose
         return Gauge(name, 0.5 * (xx + yy) + sign * radius, np.ones(len(own)))
     return Gauge(name, 0.5 * (xx + yy) + sign * radius, strengths.min(axis=1) / virgin)
-
-
-def _in_zone(zone: str, cracks: pd.DataFrame, radius_mm: float) -> np.ndarray:
-    """Which cracks belong to a zone, (n,) bool."""
-    x = 0.5 * (cracks["x1_mm"] + cracks["x2_mm"]).to_numpy() / radius_mm
-    y = 0.5 * (cracks["y1_mm"] + cracks["y2_mm"]).to_numpy() / radius_mm
-    away, angle = np.hypot(x, y), np.degrees(np.arctan2(np.abs(x), np.abs(y)))
-    tensile = (cracks["mode"] == "tensile").to_numpy()
-    low, high = BESIDE_AXIS
-    if zone == "primary":
-        return tensile & (angle < low) & (away <= NEAR["primary"])
-    if zone == "sidewall":
-        return (angle > high) & (away <= NEAR["sidewall"])
-    inside = (away >= FAN[0]) & (away <= FAN[1])
-    return tensile & inside & (angle >= low) & (angle <= high)
 
 
 def _none(zone: str, criterion: str, note: str) -> Event:

@@ -29,7 +29,7 @@ def initiation(stress_of):
     last["initiation_MPa"] = 99.0
     rows.append(last | {"criterion": "crack"})
     rows.append(last | {"case": "hole_null_r25.0"})
-    rows.append(last | {"case": "hole_r25.0@seed3", "note": "after the largest stress"})
+    rows.append(last | {"case": "hole_r25.0@seed3", "note": "after the peak"})
     return pd.DataFrame(rows)
 
 

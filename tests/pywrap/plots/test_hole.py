@@ -85,7 +85,7 @@ def test_stage_that_never_came_is_said(make_hole, data_folder):
 def test_stage_of_a_failed_block_is_said(make_hole, data_folder):
     late = (24.0 * 1.05, 0.05, 1.1, "tensile")
     drawn = hole.patterns([make_hole("hole_r25.0", cracks=[late])], data_folder)
-    assert drawn.axes[0].get_title(loc="left").endswith("after the largest stress")
+    assert drawn.axes[0].get_title(loc="left").endswith("after the peak")
 
 
 def test_patterns_have_a_row_for_each_radius_of_the_paper(make_hole, data_folder):
