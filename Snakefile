@@ -2,6 +2,8 @@
 # Another suite: `--config suite=configs/suite_quick.yaml`.
 from pathlib import Path
 
+from snakemake.exceptions import WorkflowError
+
 from lithofrac.config import load_suite
 
 SUITE = config.get("suite", "configs/suite.yaml")
@@ -48,6 +50,24 @@ FIGURES = expand(
     case=DISCRETE,
 ) + [f"{OUT}/figures/{kind}.svg" for kind, runs in COMPARED.items() if runs]
 
+# What `regression` runs, whatever suite is asked for: by the installed build each case, and for new
+# references also by a build that gives the same bits on every x86-64, with two more meshes of cases
+# that crack.
+QUICK_SUITE = "configs/suite_quick.yaml"
+QUICK = load_suite(QUICK_SUITE)
+REALISED = [
+    f"{name}@seed{seed}"
+    for name in QUICK.cases
+    for seed in (2, 3)
+    if QUICK.case(name).fracture.mode != "off"
+]
+QUICK_RUN = f"{OUT}/regression/{{build}}/{{quick}}/summary.json"
+PORTABLE = "build/portable-site"
+PACKAGE = [file for file in sorted(Path("pywrap").rglob("*.py"))]
+SOURCES = CORE + [
+    str(file) for file in PACKAGE if file.parent.name not in ("plots", "report")
+]
+
 
 report: "reports/captions/suite.rst"
 
@@ -55,6 +75,8 @@ report: "reports/captions/suite.rst"
 wildcard_constraints:
     case="|".join(CASES),
     compared="|".join(COMPARED),
+    quick="|".join([*QUICK.cases, *REALISED]),
+    build="installed|portable",
 
 
 rule all:
@@ -232,6 +254,70 @@ rule table:
         "Write the table {wildcards.table}"
     shell:
         "lithofrac plot {wildcards.table} {input.sources} --out {output} > {log} 2>&1"
+
+
+rule portable:
+    # The twin for references; the installed build stays as it is.
+    input:
+        SOURCES,
+    output:
+        f"{PORTABLE}/build.stamp",
+    message:
+        "Build for every x86-64"
+    shell:
+        "python3 tasks.py portable"
+
+
+rule run_quick:
+    input:
+        SOURCES,
+        lambda wildcards: rules.portable.output if wildcards.build == "portable" else [],
+    output:
+        QUICK_RUN,
+    log:
+        f"{OUT}/log/regression_{{build}}_{{quick}}.txt",
+    params:
+        case=lambda wildcards: QUICK.case(wildcards.quick).resolved(),
+        first=lambda wildcards: (
+            f"PYTHONPATH={PORTABLE}" if wildcards.build == "portable" else ""
+        ),
+    message:
+        "Run {wildcards.quick} of the quick suite ({wildcards.build} build)"
+    shell:
+        "{params.first} lithofrac run {wildcards.quick} --suite {QUICK_SUITE}"
+        " --out $(dirname {output}) --threads {threads} > {log} 2>&1"
+
+
+rule regression:
+    # Asked for by name only: says what moved, and fails if anything did.
+    input:
+        runs=expand(QUICK_RUN, build="installed", quick=QUICK.cases),
+    message:
+        "Hold the quick suite against tests/references"
+    shell:
+        "lithofrac compare {input.runs}"
+
+
+def with_reason(wildcards):
+    """Runs for new references; refuses before the first of them when nobody says why."""
+    if not str(config.get("why", "")).strip():
+        raise WorkflowError(
+            "update_references: no reason, expected --config why='WHAT AND WHY'"
+        )
+    return expand(QUICK_RUN, build="portable", quick=[*QUICK.cases, *REALISED])
+
+
+rule update_references:
+    # Asked for by name only, with `--config why="..."`.
+    input:
+        runs=with_reason,
+        twin=rules.regression.input.runs,
+    params:
+        why=lambda wildcards: str(config["why"]),
+    message:
+        "Replace tests/references"
+    shell:
+        "lithofrac references {input.runs} --twin {input.twin} --why {params.why:q}"
 
 
 rule pages:

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 import lithofrac
+from lithofrac._build import NATIVE
 from lithofrac.analysis.strength import first_peak
 from lithofrac.core import ContactStatistics, Run
 from lithofrac.errors import CoreError
@@ -232,6 +233,7 @@ class _Session:
             "message": message,
             **self.meta,
             "version": lithofrac.__version__,
+            "native": NATIVE,
             "elements": elements,
             "nodes": len(self.problem.mesh.nodes),
             "steps": run.step,
