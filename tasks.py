@@ -351,7 +351,7 @@ def lint():
     linters = {
         "ruff check": ["ruff", "check", "--quiet"],
         "ruff format": ["ruff", "format", "--check", "--quiet"],
-        "snakefmt": ["snakefmt", "--check", "Snakefile"],
+        "snakefmt": ["snakefmt", "--check", "Snakefile", "pywrap/rules"],
         "fortitude": ["fortitude", "check", "--output-format=concise", "fortran", "pywrap"],
     }
     failed = []

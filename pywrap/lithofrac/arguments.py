@@ -25,7 +25,7 @@ def parser() -> argparse.ArgumentParser:
     commands = found.add_subparsers(
         title="commands", metavar="COMMAND", dest="command", required=True
     )
-    for add in (_check, _mesh, _run, _plot, _report, _point, _compare, _references):
+    for add in (_check, _mesh, _run, _plot, _report, _gallery, _point, _compare, _references):
         add(commands)
     return found
 
@@ -41,6 +41,7 @@ def _command(commands, name: str, summary: str, example: str) -> argparse.Argume
 
 MOST_THREADS = max(64, 4 * (os.cpu_count() or 1))  # far more than help, far fewer than crash
 REFERENCES = Path("tests/references")
+GALLERY = Path("reports/gallery")
 CASE = "case file (.yaml) or name in the suite; NAME@seed2 is another mesh"
 
 
@@ -95,6 +96,13 @@ def _report(commands) -> None:
     one = _command(commands, "report", "write the report of a suite", "out --out reports/suite.md")
     one.add_argument("folder", type=Path, metavar="DIR", help="folder of the results folders")
     one.add_argument("--out", type=_path, required=True, metavar="FILE", help="Markdown to write")
+
+
+def _gallery(commands) -> None:
+    one = _command(commands, "gallery", "replace the committed pictures", "out out/gallery/*.png")
+    one.add_argument("folder", type=Path, metavar="DIR", help="folder of the results folders")
+    one.add_argument("picture", type=Path, nargs="+", metavar="PNG", help="picture to show")
+    one.add_argument("--out", type=_path, default=GALLERY, metavar="DIR", help=f"default {GALLERY}")
 
 
 def _point(commands) -> None:

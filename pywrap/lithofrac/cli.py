@@ -1,4 +1,4 @@
-"""The command line: `lithofrac check | mesh | run | plot | report | point | compare | references`.
+"""The command line: `lithofrac check | mesh | run | plot | report | ...`.
 
 Exit codes: 0 good, 2 bad input, 3 numerical failure, 4 numbers moved, 130 interrupted. Heavy
 modules are imported by the command that needs them.
@@ -153,6 +153,14 @@ def report(options: Namespace) -> int:
     return GOOD
 
 
+def gallery(options: Namespace) -> int:
+    """Replace the committed pictures, and say what made them."""
+    from lithofrac.report import write_gallery
+
+    write_gallery(options.folder, options.picture, options.out, Path("reports/captions"))
+    return GOOD
+
+
 def point(options: Namespace) -> int:
     """Drive one material point and write its curve, or a folder of curves."""
     from lithofrac import point as bench
@@ -220,6 +228,7 @@ COMMANDS = {
     "run": run,
     "plot": plot,
     "report": report,
+    "gallery": gallery,
     "point": point,
     "compare": compare,
     "references": references,
