@@ -8,7 +8,7 @@ from lithofrac.report import category_of, load_sheets
 SUITE = config.get("suite", "configs/suite.yaml")
 OUT = config.get("out", "out")
 ENTRIES = load_suite(SUITE)
-CASES = {name: ENTRIES.case(name).resolved() for name in ENTRIES.cases}
+CASES = {name: ENTRIES.case(name).resolved() for name in ENTRIES.names}
 SCENES = {case["title"]: name for name, case in reversed(CASES.items())}.values()
 DISCRETE = [name for name, case in CASES.items() if case["fracture"]["mode"] != "off"]
 

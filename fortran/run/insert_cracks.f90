@@ -47,6 +47,7 @@ contains
          call plan_cracks(model%mesh, fracture%topology, factor, normal, fracture%rules, &
             fracture%retry, cracks, fracture%n_waiting, n_closed)
          fracture%n_closed = fracture%n_closed + n_closed
+         call renew_grains(model, factor)
          if (size(cracks) == 0) return
          call start_edits(edits, model%mesh)
          allocate (release(0))
@@ -54,7 +55,6 @@ contains
             call open_crack(model, cracks(i), factor, edits, release)
          end do
          fracture%retry = [fracture%retry, spread(0.0_wp, 1, edits%n_nodes)]
-         call renew_grains(model, edits)
       end associate
       call grow(model, edits, status)
       if (status%code == ok) call hold_together(model, edits, release)
@@ -294,25 +294,24 @@ contains
    end subroutine hold_together
 
    !> An element on its own has no edge left to open: with its strength used up it would flow
-   !> without end, and turn inside out. Its damage is that of the cracks around it.
-   subroutine renew_grains(model, edits)
+   !> without end, and turn inside out. When it has failed twice over it begins anew, whatever
+   !> the rule of reset: its damage is that of the cracks around it.
+   subroutine renew_grains(model, factor)
       type(model_type), intent(inout) :: model
-      type(edits_type), intent(in) :: edits
+      real(wp), intent(in) :: factor(:)            !! (n_elements) failure factors
 
       real(wp), parameter :: any_way(2) = [1.0_wp, 0.0_wp]
+      real(wp), parameter :: twice = 2.0_wp  ! 1 would renew what failed as it came loose
       real(wp) :: regained
-      integer :: i
+      integer :: element
 
       associate (topology => model%fracture%topology)
-         do i = 1, edits%n_changed
-            associate (element => edits%changed(i))
-               if (element > edits%elements_before .or. .not. topology%alive(element)) cycle
-               if (any(topology%neighbour(:, element) > 0)) cycle
-               call reset_element(model%chunks, element, &
-                  model%rocks(model%mesh%body(element)), any_way, paper_reset, model%state, &
-                  regained)
-               model%ledger%reset = model%ledger%reset + regained
-            end associate
+         do element = 1, model%mesh%n_elements
+            if (factor(element) < twice .or. .not. topology%alive(element)) cycle
+            if (any(topology%neighbour(:, element) > 0)) cycle
+            call reset_element(model%chunks, element, model%rocks(model%mesh%body(element)), &
+               any_way, paper_reset, model%state, regained)
+            model%ledger%reset = model%ledger%reset + regained
          end do
       end associate
    end subroutine renew_grains

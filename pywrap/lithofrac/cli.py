@@ -74,7 +74,7 @@ def check(options: Namespace) -> int:
     from lithofrac.config import load_suite
     from lithofrac.config.suite import default_suite
 
-    names = options.case or list(load_suite(options.suite or default_suite()).cases)
+    names = options.case or list(load_suite(options.suite or default_suite()).names)
     if len(names) == 1:
         _print_plan(names[0], _case(names[0], options))
         return GOOD

@@ -170,7 +170,7 @@ class Fracture:
     release_steps : steps over which the traction on a new crack fades; None: twice the way of a
         shear wave along it, at least 20; 0: at once, as in the paper
     reset : "normal", failed elements count their failure anew across the crack and regain
-        nothing, or "paper", all their state variables
+        nothing unless they stand alone, or "paper", all their state variables
     interval : steps between two failure maps; at 5 a crack may still run as fast as surface waves
     """
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from fracture_models import weakened
-from models import hold, problem, rectangle
+from fracture_models import brittle, weakened
+from models import hold, one_triangle, problem, rectangle
 
 from lithofrac.config import Material
 from lithofrac.core import Run
@@ -128,3 +128,41 @@ def test_the_energy_that_elements_regain_is_booked_outside_the_balance(reset, we
     print(f"{run.sizes().cracks} cracks, regained {energy.reset:.2e} J, residual {residual:.1e}")
     assert residual < 1e-6
     assert (energy.reset > 0.0) == (reset == "paper")
+
+
+@pytest.mark.parametrize("reset", ["normal", "paper"])
+def test_an_element_on_its_own_begins_anew_when_it_has_failed_twice_over(reset):
+    """It has no edge left to open: without strength it would be drawn out without end."""
+    mesh, width = one_triangle(SIZE), SIZE
+    rock = brittle(fracture_energy=60.0)
+    critical = 2.0 * rock.fracture_energy / (width * rock.tensile_strength)  # strain, eq. 15
+    run = Run(
+        problem(
+            mesh,
+            rock,
+            velocity_loads=(
+                hold("base", np.array([0, 1], np.int32), 1),
+                hold("corner", np.array([0], np.int32), 0),
+                hold("top", np.array([2], np.int32), 1, SPEED, ramp=Ramp(0.0, 2e-5)),
+            ),
+            contact=Contact(),
+            fracture=Fracture(reset=reset),
+            damping=Damping(0.3),
+        )
+    )
+    strains, strengths = [], []
+    while not strains or strains[-1] < 4.5 * critical:
+        run.advance(5)
+        element = run.elements([0])
+        strains.append(element.strain[0, 1])
+        strengths.append(element.tensile_strength[0, :2].min())
+    strains, strengths = np.array(strains) / critical, np.array(strengths)
+    assert np.all(strengths[(strains > 1.1) & (strains < 1.95)] == 0.0)
+    renewed = np.flatnonzero(np.diff(strengths) > 0.0)
+    assert strains[renewed] == pytest.approx(2.0 * np.arange(1, len(renewed) + 1), rel=0.1)
+    assert len(renewed) >= 2
+    # all that was spent twice over is free to be spent again
+    assert run.energy().reset == pytest.approx(
+        len(renewed) * rock.fracture_energy * mesh.areas()[0] / width, rel=0.01
+    )
+    assert abs(run.energy().residual) < 1e-6

@@ -6,7 +6,8 @@ import numpy as np
 
 from lithofrac.config.scene import (
     Brazilian,
-    HoleQuarter,
+    Hole,
+    HoleInBlock,
     Punch,
     Scene,
     SingleElement,
@@ -21,8 +22,8 @@ def element_count(scene: Scene) -> float:
     """Estimate of the number of elements of the rock, good to some ten percent unless tiny."""
     if isinstance(scene, SingleElement):
         return 1.0
-    if isinstance(scene, HoleQuarter):
-        return _around_hole(scene)
+    if isinstance(scene, HoleInBlock):
+        return (2 if isinstance(scene, Hole) else 1) * _quarter_around_hole(scene)
     if isinstance(scene, Punch):
         return _under_strip(scene)
     if isinstance(scene, Brazilian):
@@ -39,7 +40,7 @@ def _meshed(scene) -> tuple[float, float]:
     return scene.radius, scene.height if scene.whole_height else scene.height / 2
 
 
-def _around_hole(scene: HoleQuarter) -> float:
+def _quarter_around_hole(scene: HoleInBlock) -> float:
     """Rings of the graded size field up to the half width, then the corner of the block."""
     radius, half = scene.radius, scene.height / 2
     wall, far = scene.wall_size, scene.element_size

@@ -9,13 +9,13 @@ from lithofrac.config.contact import PLATEN, ROCK
 from lithofrac.config.element_count import MOST_ELEMENTS, element_count
 from lithofrac.config.loading import TractionLoading
 from lithofrac.config.material import Material
-from lithofrac.config.scene import SIZE_KEYS, Brazilian, PlaneStrain, Punch, Scene
+from lithofrac.config.scene import SIZE_KEYS, Brazilian, Hole, PlaneStrain, Punch, Scene
 
 if TYPE_CHECKING:
     from lithofrac.config.case import Case
 
-WITH_PLATENS = ("plane_strain", "punch", "brazilian")
-UNCONFINED = ("hole_quarter", "bar", "brazilian")
+WITH_PLATENS = ("plane_strain", "punch", "brazilian", "hole")
+UNCONFINED = ("hole_quarter", "hole", "bar", "brazilian")
 
 
 def misfits(case: Case) -> list[str]:
@@ -71,7 +71,7 @@ def _platen_problems(case: Case) -> list[str]:
     """Platens that the scene lacks, has no place for, or that do not fit."""
     scene, platens = case.scene, case.platens
     if platens is None:
-        if isinstance(scene, (Punch, Brazilian)):
+        if isinstance(scene, (Punch, Brazilian, Hole)):
             return [f"platens: missing key, the scene {scene.kind} is loaded by platens"]
         if isinstance(scene, PlaneStrain) and scene.lateral_platens:
             return ["scene.lateral_platens = True: expected a section platens: that describes them"]
@@ -95,10 +95,12 @@ def _platen_problems(case: Case) -> list[str]:
     return problems
 
 
-def loaded_width(scene: PlaneStrain | Punch | Brazilian) -> float:
+def loaded_width(scene: PlaneStrain | Punch | Brazilian | Hole) -> float:
     """Width of the face that a loading platen presses on [m]."""
     if isinstance(scene, Punch):
         return scene.strip_width
+    if isinstance(scene, Hole):
+        return scene.height
     return scene.width if isinstance(scene, PlaneStrain) else scene.flat_width
 
 
@@ -151,5 +153,6 @@ def _count_problems(scene: Scene) -> list[str]:
 
 FINEST_KEYS = {
     "hole_quarter": "wall_elements_per_radius",
+    "hole": "wall_elements_per_radius",
     "punch": "strip_element_size_mm",
 }  # key that sets the size of the smallest elements, where it is not `element_size_mm`

@@ -27,7 +27,8 @@ class FractureSection(Section):
     wave along the crack; 0 is at once, as in the paper."""
     reset: Literal["normal", "paper"] = "normal"
     """Failed elements count their failure anew across the crack and keep all else, or regain all
-    their state as in the paper."""
+    their state as in the paper. An element that stands alone regains it either way when it has
+    failed twice over."""
     interval_steps: int = Field(default=5, ge=1, le=1_000_000)
     """Steps from one search for failed nodes to the next."""
 

@@ -87,14 +87,9 @@ class PlaneStrain(Specimen):
         return self.width_mm * MM
 
 
-class HoleQuarter(Section):
-    """Quarter of a square block with a central hole, plane strain (Klerck 2004, Fig. 13).
+class HoleInBlock(Section):
+    """What all square blocks with a central hole share."""
 
-    The hole is in the lower left corner, both symmetry planes run through its centre, and the
-    load acts on the upper face.
-    """
-
-    kind: Literal["hole_quarter"]
     hole_radius_mm: Length
     block_over_radius: float = Field(default=8.0, gt=2.0, le=1e4)
     """Width and height of the whole block, in hole radii."""
@@ -122,6 +117,26 @@ class HoleQuarter(Section):
     def element_size(self) -> float:
         """Nominal edge length of the largest elements [m]."""
         return self.radius / min(self.far_elements_per_radius, self.wall_elements_per_radius)
+
+
+class HoleQuarter(HoleInBlock):
+    """Quarter of a square block with a central hole, plane strain (Klerck 2004, Fig. 13).
+
+    The hole is in the lower left corner, both symmetry planes run through its centre, and the
+    load acts on the upper face.
+    """
+
+    kind: Literal["hole_quarter"]
+
+
+class Hole(HoleInBlock):
+    """Upper half of a square block with a central hole under a platen, plane strain.
+
+    Klerck 2004, section 3.3 and Fig. 13. The plane of symmetry runs through the centre of the
+    hole across the load; the other one, along the load, is where the primary crack opens.
+    """
+
+    kind: Literal["hole"]
 
 
 class Bar(Specimen):
@@ -246,11 +261,12 @@ class Brazilian(Section):
 
 
 Scene = Annotated[
-    SingleElement | Triaxial | PlaneStrain | HoleQuarter | Bar | Punch | Brazilian,
+    SingleElement | Triaxial | PlaneStrain | HoleQuarter | Hole | Bar | Punch | Brazilian,
     Field(discriminator="kind"),
 ]
 
 SIZE_KEYS = {
     "single_element": "size_mm",
     "hole_quarter": "far_elements_per_radius",
+    "hole": "far_elements_per_radius",
 }  # key that sets the size of the largest elements, where it is not `element_size_mm`

@@ -25,6 +25,8 @@ class Entry(Section):
     """Case file, relative to the suite file."""
     set: dict[str, Any] = Field(default_factory=dict)
     """Dotted keys of the case file and the values that replace theirs."""
+    realisations: int = Field(default=1, ge=1, le=1000)
+    """Meshes of equal density that are run: NAME, NAME@seed2, NAME@seed3 and so on."""
 
 
 class Suite(Section):
@@ -34,6 +36,15 @@ class Suite(Section):
     cases: dict[Name, Entry] = Field(min_length=1)
     """Name of a case, which is also the name of its results folder -> what it is."""
     _file: Path = PrivateAttr(default=Path())
+
+    @property
+    def names(self) -> list[str]:
+        """All runs of the suite in the order of its cases, each realisation by its own name."""
+        return [
+            name if seed == 1 else f"{name}@seed{seed}"
+            for name, entry in self.cases.items()
+            for seed in range(1, entry.realisations + 1)
+        ]
 
     def case(self, name: str, overrides: Mapping | None = None) -> Case:
         """The checked case of that name; `NAME@seed2` is another mesh of case NAME.

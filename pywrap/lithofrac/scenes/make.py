@@ -9,6 +9,7 @@ from lithofrac.problem import Mesh, Problem
 from lithofrac.scenes import (
     bar,
     brazilian,
+    hole,
     hole_quarter,
     plane_strain,
     punch,
@@ -21,6 +22,7 @@ SCENES = {
     "triaxial": triaxial,
     "plane_strain": plane_strain,
     "hole_quarter": hole_quarter,
+    "hole": hole,
     "bar": bar,
     "punch": punch,
     "brazilian": brazilian,

@@ -66,7 +66,7 @@ def test_a_plate_between_free_sides_shortens_as_in_plane_strain():
             TRIAXIAL,
             {**STEEL, "contact": {}},
             "platens: the scene triaxial has no platens, expected one of: plane_strain, punch, "
-            "brazilian",
+            "brazilian, hole",
         ),
         (
             PUNCH,

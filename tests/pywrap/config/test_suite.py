@@ -60,6 +60,30 @@ def test_a_seed_after_the_name_is_another_realisation():
     assert find_case("kirsch").mesh.seed == 1
 
 
+def test_realisations_are_runs_of_their_own():
+    names = load_suite(SUITE).names
+    assert [name for name in names if name.startswith("hole_r16.3")] == [
+        "hole_r16.3",
+        "hole_r16.3@seed2",
+        "hole_r16.3@seed3",
+    ]
+    assert len(names) == len(set(names))
+    assert find_case(names[-1]).mesh.seed == 1
+
+
+def test_null_tests_of_the_size_effect_differ_in_scale_alone():
+    """Everything that has a length is in proportion to the radius, Gf as well."""
+    base = find_case("hole_r25.0")
+    for radius in (1.6, 6.4):
+        case, scale = find_case(f"hole_null_r{radius:04.1f}"), radius / 25.0
+        assert case.material.fracture_energy == pytest.approx(scale * base.material.fracture_energy)
+        for value in ("radius", "wall_size", "element_size", "height"):
+            assert getattr(case.scene, value) == pytest.approx(scale * getattr(base.scene, value))
+        assert case.platens.thickness == pytest.approx(scale * base.platens.thickness)
+        assert case.platens.overhang == pytest.approx(scale * base.platens.overhang)
+        assert (case.loading, case.damping) == (base.loading, base.damping)
+
+
 def test_a_case_is_found_by_name_or_by_file():
     by_name = find_case("sandstone_triaxial_p05")
     by_file = find_case(

@@ -20,6 +20,8 @@ SCENES = [
     "sandstone_plane_strain_p00",
     "punch_gf60",
     "brazilian",
+    "hole_r06.4",
+    "hole_block150_r16.3",
     "kirsch",
     "bar_wave",
 ]
@@ -33,6 +35,8 @@ AREA_mm2 = {
     "punch_gf60": 80 * 80 + 10 * 1 + 12 * 10 + 2 * 80 * 10,
     # without the segments beyond the flats of 6 degrees, with the platens
     "brazilian": 20**2 * (np.pi - ARC + np.sin(ARC)) + 2 * (40 * np.sin(ARC / 2) + 6) * 5,
+    "hole_r06.4": 6.4**2 * (8 * 4 - np.pi / 2 + 8.2),
+    "hole_block150_r16.3": 150 * 75 - np.pi * 16.3**2 / 2 + 155 * 25,
     "kirsch": 100**2 - np.pi * 25**2 / 4,
     "bar_wave": 5 * 100,
 }
@@ -51,7 +55,7 @@ def mesh(name, problem_of):
 def test_triangles_are_counter_clockwise_and_cover_the_scene(name, mesh):
     assert (mesh.areas() > 0).all()
     # polygons along arcs differ a little from them
-    tolerance = 1e-3 if name in ("kirsch", "brazilian") else 1e-12
+    tolerance = 1e-12 if name.startswith(("s", "p", "bar")) else 1e-3
     assert mesh.areas().sum() * 1e6 == pytest.approx(AREA_mm2[name], rel=tolerance)
 
 
@@ -119,6 +123,12 @@ def test_elements_of_the_hole_grow_from_wall_to_face(problem_of):
 
     assert mean_length("hole") == pytest.approx(25e-3 / 12, rel=0.1)
     assert mean_length("top") == pytest.approx(25e-3 / 3, rel=0.15)
+
+
+def test_blocks_of_any_radius_have_the_same_mesh(problem_of):
+    small, large = (problem_of(name)[1].mesh for name in ("hole_r01.6", "hole_r31.0"))
+    assert np.array_equal(small.triangles, large.triangles)
+    np.testing.assert_allclose(small.nodes / 1.6, large.nodes / 31.0, rtol=0, atol=1e-15)
 
 
 def test_elements_of_the_punch_are_small_in_and_under_the_strip(problem_of):

@@ -9,6 +9,7 @@ SANDSTONE = {"scene__element_size_mm": 2.0}
 WITH_PLATENS = {
     "punch_gf60": {},
     "brazilian": {},
+    "hole_r16.3": {},
     "sandstone_soft_p10": SANDSTONE,
     "sandstone_plane_strain_p10": SANDSTONE,
 }
