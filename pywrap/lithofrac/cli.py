@@ -217,7 +217,7 @@ def references(options: Namespace) -> int:
 
     runs, twins = find_runs(_present(options.run)), find_runs(_present(options.twin))
     numbers, meshes = make(runs, twins, Path("data"))
-    write(options.references, numbers, meshes, options.why, runs[0].summary)
+    write(options.references, numbers, meshes, options.why, runs)
     print(f"{options.references}: {len(numbers)} numbers of {len(meshes)} cases")
     return GOOD
 

@@ -11,6 +11,7 @@ A folder of references holds
 """
 
 import datetime
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -149,14 +150,14 @@ def tolerance(row, others: np.ndarray, amplified: bool) -> tuple[str, float, str
 
 
 def write(
-    folder: Path, numbers: pd.DataFrame, meshes: dict[str, str], why: str, made_by: dict
+    folder: Path, numbers: pd.DataFrame, meshes: dict[str, str], why: str, runs: list[Run]
 ) -> None:
     """Replace the references of a folder and add a line to its updates.
 
     Parameters
     ----------
     why : the reason, a sentence; kept
-    made_by : a summary of the runs, for version and commit
+    runs : what the numbers are of, for version and commit; several commits are all named
 
     Raises
     ------
@@ -168,8 +169,7 @@ def write(
     folder.mkdir(parents=True, exist_ok=True)
     line = {
         "date": datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC"),
-        "version": made_by["version"],
-        "commit": made_by.get("commit") or "unknown",
+        **{key: _all(run.summary.get(key) for run in runs) for key in ("version", "commit")},
         "cases": len(meshes),
         "numbers": len(numbers),
         "why": " ".join(why.split()),
@@ -207,6 +207,11 @@ def read(folder: Path) -> References:
             raise DataError(f"{path}: column '{missing[0]}' is missing")
     meshes = dict(tables["meshes"][MESHES].itertuples(index=False))
     return References(tables["numbers"], meshes, tables["updates"].iloc[-1].to_dict())
+
+
+def _all(words: Iterable[str | None]) -> str:
+    """Distinct words in one string."""
+    return " ".join(sorted({word or "unknown" for word in words}))
 
 
 def _check_builds(runs: list[Run], twins: list[Run], own: list[Run]) -> None:

@@ -66,7 +66,7 @@ def references(finished, tmp_path, data_folder):
     twins = [finished("a", "native"), finished("b", "native")]
     numbers, meshes = make(find_runs(runs), find_runs(twins), data_folder)
     folder = tmp_path / "references"
-    write(folder, numbers, meshes, "the first ones", Run(runs[0]).summary)
+    write(folder, numbers, meshes, "the first ones", find_runs(runs))
     return folder
 
 
@@ -211,11 +211,13 @@ def test_references_without_a_reason_are_refused_and_nothing_is_written(
 
 @no_core
 def test_update_adds_a_line_that_says_when_and_why(references, finished):
-    words = ["references", str(finished("a")), "--twin", str(finished("a", "native"))]
+    words = ["references", str(finished("a", commit="abc")), str(finished("a@seed2"))]
+    words += ["--twin", str(finished("a", "native"))]
     assert main([*words, "--why", "finer,\n ramps", "--references", str(references)]) == 0
     lines = pd.read_csv(references / "updates.csv")
     assert list(lines["why"]) == ["the first ones", "finer, ramps"]
     assert list(lines["cases"]) == [2, 1]
+    assert list(lines["commit"]) == ["0123456789ab", "0123456789ab abc"]
     assert lines["date"].str.fullmatch(r"\d{4}-\d\d-\d\d \d\d:\d\d UTC").all()
 
 
