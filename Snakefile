@@ -10,6 +10,7 @@ OUT = config.get("out", "out")
 ENTRIES = load_suite(SUITE)
 CASES = {name: ENTRIES.case(name).resolved() for name in ENTRIES.names}
 SCENES = {case["title"]: name for name, case in reversed(CASES.items())}.values()
+VARIANTS = ENTRIES.variants  # name -> name of its twin
 DISCRETE = [name for name, case in CASES.items() if case["fracture"]["mode"] != "off"]
 
 ROCKS = ["quartzite", "sandstone", "tyndall_limestone"]
@@ -24,7 +25,10 @@ DRAWING = [file for part in PARTS for file in sorted(Path(part).glob("*.py"))]
 DRAWING += [*sorted(Path("data").rglob("*.csv")), *sorted(Path("data").rglob("*.yaml"))]
 
 RUNS = expand(f"{OUT}/runs/{{case}}/summary.json", case=CASES)
-SANDSTONE = [run for run in RUNS if "/sandstone_" in run]
+PAIRED = dict.fromkeys(name for pair in VARIANTS.items() for name in pair)
+PAIRS = expand(f"{OUT}/runs/{{case}}/summary.json", case=PAIRED)
+OWN = [run for run in RUNS if run.split("/")[-2] not in VARIANTS]
+SANDSTONE = [run for run in OWN if "/sandstone_" in run]
 CURVES = expand(BENCH, rock=ROCKS, test="triaxial")
 STIFF = expand(BENCH, rock="sandstone", test="stiff_confinement")
 TABLES = {
@@ -37,11 +41,13 @@ TABLES = {
     **{"zigong": [], "zigong_fit": []},
     "kirsch": [run for run in RUNS if "/kirsch" in run],
     "run_time": RUNS,
-    **{"cracks": RUNS, "bands": RUNS, "punch": RUNS},
+    **{"cracks": RUNS, "bands": RUNS, "punch": OWN},
+    "variants": [SUITE, *PAIRS],
 }
 COMPARED = {
-    "punch": [run for run in RUNS if "/punch_" in run],
-    "fracture_series": [run for run in RUNS if "/sandstone_soft_p" in run],
+    "punch": [run for run in OWN if "/punch_" in run],
+    "fracture_series": [run for run in OWN if "/sandstone_soft_p" in run],
+    "variants": [SUITE, *PAIRS] if VARIANTS else [],
 }
 ALWAYS = ["stress_strain.svg", "strength.svg", "measured.svg", "sandstone.png"]
 FIGURES = expand(

@@ -29,12 +29,12 @@ module lithofrac_fracture_fracture
       type(fragment_drag_type) :: drag
       integer, allocatable :: heir(:)               !! (n_elements) itself, or a piece of it
       integer, allocatable :: resets(:)             !! (n_elements) times that it was reset
-      real(wp), allocatable :: retry(:)             !! (n_nodes) F_p below which it is left alone
+      !> (n_nodes) F_p below which it is left alone; positive where a crack had no way once
+      real(wp), allocatable :: retry(:)
       real(wp) :: looked_at = 0.0_wp                !! `any_failed` of the last map
       integer :: n_waiting = 0                      !! failed nodes that the last map put off
       integer :: n_cracks = 0                       !! failed nodes that have cracked
       integer :: n_fallbacks = 0                    !! edges taken where a cut was planned
-      integer :: n_closed = 0                       !! times that a failed node had no way
       integer :: n_edges = 0                        !! edges opened
       !> (n_record, >= n_edges) step; crack; ends x1, y1, x2, y2 [m]; length [m]; direction [rad];
       !> F_p; agreement; share of compressive dissipation; far end is split; goes through an

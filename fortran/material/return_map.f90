@@ -95,7 +95,7 @@ contains
 
       found = .false.
       mixed = .false.
-      if (.not. opens .and. .not. rock%explicit_coupling) then
+      if (.not. opens) then
          call return_to_pyramid(rock, sorted, ep_eff, now, best%e, best%flow, found)
       end if
       if (.not. found) then

@@ -2,6 +2,7 @@
 !>
 !> Elasticity, tensile strength and fracture energy, and the mobilised cohesion,
 !> friction and dilation of Klerck, Sellers & Owen 2004, section 2.2 and Table 1.
+!> Beyond the paper: a reference width, see `lithofrac_material_regularise`.
 !> Conventions of the whole library: tension is positive, SI units, radians.
 module lithofrac_material_rock
    use lithofrac_base_kinds, only: pi, wp
@@ -32,6 +33,8 @@ module lithofrac_material_rock
       type(table_type) :: cohesion            !! [Pa] over effective plastic strain
       type(table_type) :: friction            !! [rad] over effective plastic strain
       type(table_type) :: dilation            !! [rad] over effective plastic strain
+      real(wp) :: reference_width = 0.0_wp    !! band that softens as the table says [m], 0: any
+      integer :: onset = 0                    !! row of the tables where softening starts
       logical :: total_hardening = .false.    !! tension feeds the effective plastic strain too
       logical :: explicit_coupling = .false.  !! planes are checked with their old strength
       logical :: compression = .true.         !! Mohr-Coulomb planes exist
@@ -43,7 +46,8 @@ contains
    !> Build a rock, or say in words which number makes no sense.
    pure subroutine new_rock(rock, constants, table, options, status)
       type(rock_type), intent(out) :: rock
-      real(wp), intent(in) :: constants(5)     !! E [Pa], nu, density [kg/m3], ft [Pa], Gf [J/m2]
+      real(wp), intent(in) :: constants(6)     !! E [Pa], nu, density [kg/m3], ft [Pa], Gf [J/m2],
+                                               !! reference width [m] or 0
       real(wp), intent(in) :: table(:, :)      !! (4, k): strain, c [Pa], phi [rad], psi [rad]
       integer, intent(in) :: options(4)        !! total, explicit, compression, yields (0 or 1)
       type(status_type), intent(out) :: status
@@ -53,6 +57,7 @@ contains
       rock%density = constants(3)
       rock%tensile_strength = constants(4)
       rock%fracture_energy = constants(5)
+      rock%reference_width = constants(6)
       rock%total_hardening = options(1) == 1
       rock%explicit_coupling = options(2) == 1
       rock%compression = options(3) == 1
@@ -64,6 +69,8 @@ contains
       rock%lame = rock%young*rock%poisson/((1.0_wp + rock%poisson)*(1.0_wp - 2.0_wp*rock%poisson))
       rock%compression = rock%compression .and. rock%yields
       if (rock%compression) call set_tables(rock, table, status)
+      if (status%code /= ok) return
+      call set_onset(rock, status)
       if (status%code /= ok) return
       call set_scales(rock)
    end subroutine new_rock
@@ -85,6 +92,8 @@ contains
          call set_failure(status, bad_input, "rock: tensile strength must be positive")
       else if (rock%yields .and. .not. positive(rock%fracture_energy)) then
          call set_failure(status, bad_input, "rock: fracture energy must be positive")
+      else if (rock%reference_width < 0.0_wp .or. .not. rock%reference_width <= huge(1.0_wp)) then
+         call set_failure(status, bad_input, "rock: reference width must be 0 or positive")
       end if
    end subroutine check_constants
 
@@ -111,6 +120,27 @@ contains
             "rock: dilation must be at least 0 and below 90 degrees")
       end if
    end subroutine set_tables
+
+   !> Find the row where softening starts: that of the largest uniaxial strength.
+   !>
+   !> Choice: cohesion alone falls from the first row on while friction still rises, so that
+   !> its fall is no softening; under confinement the strength peaks in the same row or a later
+   !> one (test_regularise).
+   pure subroutine set_onset(rock, status)
+      type(rock_type), intent(inout) :: rock
+      type(status_type), intent(out) :: status
+
+      if (.not. rock%reference_width > 0.0_wp) return
+      if (.not. rock%compression) then
+         call set_failure(status, bad_input, "rock: a reference width needs Mohr-Coulomb planes")
+         return
+      end if
+      associate (n => rock%cohesion%n, c => rock%cohesion%y, phi => rock%friction%y)
+         rock%onset = maxloc(c(1:n)*cos(phi(1:n))/(1.0_wp - sin(phi(1:n))), 1, back=.true.)
+         if (rock%onset == n) call set_failure(status, bad_input, &
+            "rock: a reference width needs a table that softens")
+      end associate
+   end subroutine set_onset
 
    pure subroutine set_scales(rock)
       type(rock_type), intent(inout) :: rock

@@ -8,6 +8,7 @@ module lithofrac_material_stress_update
    use lithofrac_base_status, only: no_return_map, ok
    use lithofrac_material_crack_axes, only: follow_axes, turn_crack
    use lithofrac_material_mohr_coulomb, only: strength_coefficients
+   use lithofrac_material_regularise, only: regularises, rock_of_band, table_strain
    use lithofrac_material_return_map, only: return_to_surface
    use lithofrac_material_rock, only: rock_type
    use lithofrac_material_tension_planes, only: softened_strength, softening_modulus
@@ -15,7 +16,7 @@ module lithofrac_material_stress_update
    implicit none
    private
 
-   public :: point_type, virgin_point, update_stress, strength_coefficients, softening_modulus
+   public :: point_type, virgin_point, update_stress, strength_of_band, softening_modulus
    public :: substep_bit
 
    integer, parameter :: substep_bit = 11  !! set in `active` when the step was cut
@@ -60,14 +61,58 @@ contains
       integer, intent(out) :: active               !! planes with flow
       integer, intent(out) :: code                 !! `ok` or `no_return_map`
 
-      integer :: halving
-
       sigma = trial
       dep = 0.0_wp
       dep_compressive = 0.0_wp
       active = 0
       code = ok
       if (.not. rock%yields) return
+      if (regularises(rock)) then
+         call update_in_band(rock, softening, old, trial, point, sigma, dep, dep_compressive, &
+            active, code)
+      else
+         call update_by_table(rock, softening, old, trial, point, sigma, dep, dep_compressive, &
+            active, code)
+      end if
+   end subroutine update_stress
+
+   !> The same with the tables that hold in a band of the width that `softening` stands for.
+   pure subroutine update_in_band(rock, softening, old, trial, point, sigma, dep, &
+      dep_compressive, active, code)
+      type(rock_type), intent(in) :: rock
+      real(wp), intent(in) :: softening
+      real(wp), intent(in) :: old(4)
+      real(wp), intent(in) :: trial(4)
+      type(point_type), intent(inout) :: point
+      real(wp), intent(inout) :: sigma(4)
+      real(wp), intent(inout) :: dep(4)
+      real(wp), intent(inout) :: dep_compressive(4)
+      integer, intent(inout) :: active
+      integer, intent(inout) :: code
+
+      type(rock_type) :: own
+
+      call rock_of_band(rock, softening, own)
+      call update_by_table(own, softening, old, trial, point, sigma, dep, dep_compressive, &
+         active, code)
+   end subroutine update_in_band
+
+   !> One return, in ever smaller parts until it succeeds.
+   pure subroutine update_by_table(rock, softening, old, trial, point, sigma, dep, &
+      dep_compressive, active, code)
+      type(rock_type), intent(in) :: rock
+      real(wp), intent(in) :: softening
+      real(wp), intent(in) :: old(4)
+      real(wp), intent(in) :: trial(4)
+      type(point_type), intent(inout) :: point
+      real(wp), intent(inout) :: sigma(4)
+      real(wp), intent(inout) :: dep(4)
+      real(wp), intent(inout) :: dep_compressive(4)
+      integer, intent(inout) :: active
+      integer, intent(inout) :: code
+
+      integer :: halving
+
       call take_step(rock, softening, trial, point, sigma, dep, dep_compressive, active, code)
       do halving = 1, max_halvings
          if (code == ok) return
@@ -75,7 +120,18 @@ contains
             dep_compressive, active, code)
       end do
       if (code /= ok) sigma = old
-   end subroutine update_stress
+   end subroutine update_by_table
+
+   !> sin(phi) and c cos(phi) [Pa] of a band: all that a yield check needs.
+   pure subroutine strength_of_band(rock, softening, ep_eff, sin_phi, c_cos_phi)
+      type(rock_type), intent(in) :: rock
+      real(wp), intent(in) :: softening   !! H, not positive [Pa]
+      real(wp), intent(in) :: ep_eff      !! effective plastic strain [-]
+      real(wp), intent(out) :: sin_phi    !! [-]
+      real(wp), intent(out) :: c_cos_phi  !! [Pa]
+
+      call strength_coefficients(rock, table_strain(rock, softening, ep_eff), sin_phi, c_cos_phi)
+   end subroutine strength_of_band
 
    !> One return, without sub-steps.
    pure subroutine take_step(rock, softening, trial, point, sigma, dep, dep_compressive, &

@@ -6,7 +6,7 @@ module lithofrac_mechanics_internal_force
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: ok
    use lithofrac_material_rock, only: rock_type
-   use lithofrac_material_stress_update, only: point_type, strength_coefficients, update_stress
+   use lithofrac_material_stress_update, only: point_type, strength_of_band, update_stress
    use lithofrac_mechanics_chunks, only: chunks_type, width
    use lithofrac_mechanics_fields, only: fields_type, inelastic_type
    use lithofrac_mechanics_kinematics, only: elastic_stress, gather, gather_previous, &
@@ -258,8 +258,8 @@ contains
       work(2) = 0.5_wp*dot_product(old + sigma, dep - dep_compressive)
       state%dissipated(lane, :, chunk) = state%dissipated(lane, :, chunk) + work
       if (point%ep_eff > state%plastic_strain(lane, chunk)) then
-         call strength_coefficients(rock, point%ep_eff, state%sin_phi(lane, chunk), &
-            state%c_cos_phi(lane, chunk))
+         call strength_of_band(rock, state%softening(lane, chunk), point%ep_eff, &
+            state%sin_phi(lane, chunk), state%c_cos_phi(lane, chunk))
       end if
       state%plastic_strain(lane, chunk) = point%ep_eff
       state%ft(lane, :, chunk) = point%ft

@@ -223,7 +223,6 @@ contains
       call visitor%visit_count(fracture%n_waiting)
       call visitor%visit_count(fracture%n_cracks)
       call visitor%visit_count(fracture%n_fallbacks)
-      call visitor%visit_count(fracture%n_closed)
       call visitor%visit_count(fracture%n_edges)
       if (visitor%mode == restoring) then
          fracture%record = spread(spread(0.0_wp, 1, n_record), 2, fracture%n_edges)

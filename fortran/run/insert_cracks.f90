@@ -46,7 +46,6 @@ contains
          call set_failure_factors(model%chunks, model%rocks, model%state, factor, normal)
          call plan_cracks(model%mesh, fracture%topology, factor, normal, fracture%rules, &
             fracture%retry, cracks, fracture%n_waiting, n_closed)
-         fracture%n_closed = fracture%n_closed + n_closed
          call renew_grains(model, factor)
          if (size(cracks) == 0) return
          call start_edits(edits, model%mesh)
@@ -103,7 +102,6 @@ contains
             call choose_arms(mesh, fracture%topology, fan, crack%failure%along, inter_element, &
                fracture%rules%guard, arms)
             if (size(arms) == 0) then
-               fracture%n_closed = fracture%n_closed + 1
                fracture%retry(crack%node) = worth_another_look*crack%failure%factor
                return
             end if

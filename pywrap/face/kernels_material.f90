@@ -95,7 +95,7 @@ contains
    !> virgin sin(phi), virgin c cos(phi) [Pa], limit of the band width [m].
    subroutine rock_scales(constants, table, k, options, scales, code, message)
       integer(c_int), intent(in) :: k
-      real(c_double), intent(in) :: constants(5)
+      real(c_double), intent(in) :: constants(6)
       real(c_double), intent(in) :: table(4, k)
       integer(c_int), intent(in) :: options(4)
       real(c_double), intent(out) :: scales(8)
@@ -116,7 +116,7 @@ contains
       code, message)
       integer(c_int), intent(in) :: k
       integer(c_int), intent(in) :: n
-      real(c_double), intent(in) :: constants(5)
+      real(c_double), intent(in) :: constants(6)
       real(c_double), intent(in) :: table(4, k)
       integer(c_int), intent(in) :: options(4)
       real(c_double), intent(in) :: ep_eff(n)
@@ -142,7 +142,7 @@ contains
       moduli, strengths, code, message)
       integer(c_int), intent(in) :: k
       integer(c_int), intent(in) :: n
-      real(c_double), intent(in) :: constants(5)
+      real(c_double), intent(in) :: constants(6)
       real(c_double), intent(in) :: table(4, k)
       integer(c_int), intent(in) :: options(4)
       real(c_double), intent(in) :: areas(n)
@@ -215,7 +215,7 @@ contains
       !f2py threadsafe
       integer(c_int), intent(in) :: k
       integer(c_int), intent(in) :: n
-      real(c_double), intent(in) :: constants(5)
+      real(c_double), intent(in) :: constants(6)
       real(c_double), intent(in) :: table(4, k)
       integer(c_int), intent(in) :: options(4)
       real(c_double), intent(in) :: softening(n)     !! H, not positive [Pa]
@@ -254,7 +254,7 @@ contains
       !f2py threadsafe
       integer(c_int), intent(in) :: k
       integer(c_int), intent(in) :: n
-      real(c_double), intent(in) :: constants(5)
+      real(c_double), intent(in) :: constants(6)
       real(c_double), intent(in) :: table(4, k)
       integer(c_int), intent(in) :: options(4)
       real(c_double), intent(in) :: softening(n)      !! H, not positive [Pa]
@@ -302,7 +302,7 @@ contains
    end subroutine point_step
 
    subroutine make_rock(constants, table, options, rock, code, message)
-      real(c_double), intent(in) :: constants(5)
+      real(c_double), intent(in) :: constants(6)
       real(c_double), intent(in) :: table(:, :)
       integer(c_int), intent(in) :: options(4)
       type(rock_type), intent(out) :: rock

@@ -22,7 +22,7 @@ contains
       integer(c_int), intent(in) :: n_knots, n_steps
       real(c_double), intent(in) :: nodes(2, 3)                  !! [m]
       integer(c_int), intent(in) :: axisymmetric                 !! 0 or 1
-      real(c_double), intent(in) :: constants(5)                 !! as `new_rock`
+      real(c_double), intent(in) :: constants(6)                 !! as `new_rock`
       real(c_double), intent(in) :: table(4, n_knots)
       integer(c_int), intent(in) :: options(4)
       real(c_double), intent(in) :: band_width                   !! [m]
@@ -94,8 +94,8 @@ contains
       settings%time_step_factor = time_step_factor
       allocate (body(n_elements), source=1)
       v = velocity
-      call new_rock(rock(1), [young, poisson, density, 0.0_c_double, 0.0_c_double], no_table, &
-         [0, 0, 1, 0], status)
+      call new_rock(rock(1), [young, poisson, density, 0.0_c_double, 0.0_c_double, &
+         0.0_c_double], no_table, [0, 0, 1, 0], status)
       if (status%code == ok) call new_model(model, nodes, triangles, body, .false., rock, &
          [1.0_c_double], settings, status)
       if (status%code == ok) call bare_steps(model%chunks, rock(1)%lame, rock(1)%shear, &

@@ -43,7 +43,7 @@ contains
       integer(c_int), intent(in) :: triangles(3, n_elements)   !! counter-clockwise
       integer(c_int), intent(in) :: body(n_elements)
       integer(c_int), intent(in) :: axisymmetric               !! 0 or 1
-      real(c_double), intent(in) :: constants(5, n_bodies)     !! as `new_rock`
+      real(c_double), intent(in) :: constants(6, n_bodies)     !! as `new_rock`
       real(c_double), intent(in) :: tables(4, n_knots, n_bodies)
       integer(c_int), intent(in) :: knots(n_bodies)            !! knots in use of each table
       integer(c_int), intent(in) :: options(4, n_bodies)
@@ -298,8 +298,8 @@ contains
       mass = slots(run)%model%fields%mass
    end subroutine run_nodes
 
-   !> Nodes, elements (also those that were cut), opened edges; cracks, fallbacks, times that a
-   !> failed node had no way for a crack, most resets of one element, pairs of now.
+   !> Nodes, elements (also those that were cut), opened edges; cracks, fallbacks, failed
+   !> nodes that had no way for a crack, most resets of one element, pairs of now.
    subroutine run_sizes(run, sizes, code, message)
       integer(c_int), intent(in) :: run
       integer(c_int), intent(out) :: sizes(8)
@@ -315,7 +315,7 @@ contains
          if (.not. model%fracture%on) return
          associate (fracture => model%fracture)
             sizes(3:7) = [fracture%n_edges, fracture%n_cracks, fracture%n_fallbacks, &
-               fracture%n_closed, maxval(fracture%resets)]
+               count(fracture%retry > 0.0_c_double), maxval(fracture%resets)]
          end associate
       end associate
    end subroutine run_sizes

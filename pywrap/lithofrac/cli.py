@@ -358,7 +358,8 @@ def _print_plan(name: str, case: Case) -> None:
 def _limit(case: Case) -> str:
     if case.material.elastic:
         return "no limit"
-    return f"limit {1e3 * case.material.band_width_limit:.4g} mm"
+    limit = min(case.material.band_width_limit, case.material.compressive_width_limit)
+    return f"limit {1e3 * limit:.4g} mm"
 
 
 def _print_summary(name: str, summary: dict, out: Path) -> None:

@@ -98,7 +98,7 @@ class Sizes:
     opened_edges: int
     cracks: int  # failed nodes that have cracked
     fallbacks: int  # edges taken where a cut was planned
-    closed: int  # times that a failed node had no way for a crack
+    closed: int  # failed nodes that had no way for a crack when they were looked at
     most_resets: int  # of one element
     contact_pairs: int  # of now
 
@@ -291,11 +291,12 @@ def _arguments(problem: Problem) -> tuple:
     """Arguments of the core's `run_new`, materials packed into equal arrays."""
     mesh, materials = problem.mesh, problem.materials
     knots = np.array([m.table.shape[1] for m in materials])
-    constants = np.zeros((5, len(materials)), order="F")
+    constants = np.zeros((6, len(materials)), order="F")
     tables = np.zeros((4, knots.max(), len(materials)), order="F")
     options = np.zeros((4, len(materials)), dtype=np.int32, order="F")
     for i, m in enumerate(materials):
-        constants[:, i] = m.young, m.poisson, m.density, m.tensile_strength, m.fracture_energy
+        constants[:5, i] = m.young, m.poisson, m.density, m.tensile_strength, m.fracture_energy
+        constants[5, i] = m.reference_width
         tables[:, : knots[i], i] = m.table
         options[:, i] = m.options
     kind, alpha = damping_arguments(problem.damping)

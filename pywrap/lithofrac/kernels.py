@@ -96,7 +96,7 @@ class Scales:
 class PackedRock:
     """The numbers of a rock as the core takes them; saves time when used again and again."""
 
-    constants: np.ndarray  # (5,) E, nu, density, ft, Gf in SI
+    constants: np.ndarray  # (6,) E, nu, density, ft, Gf, reference width in SI
     table: np.ndarray  # (4, k) Fortran order: strain, cohesion [Pa], friction, dilation [rad]
     options: np.ndarray  # (4,) int32: total, explicit, compression, yields
 
@@ -106,7 +106,14 @@ def pack(rock) -> PackedRock:
     if isinstance(rock, PackedRock):
         return rock
     constants = np.array(
-        [rock.young, rock.poisson, rock.density, rock.tensile_strength, rock.fracture_energy],
+        [
+            rock.young,
+            rock.poisson,
+            rock.density,
+            rock.tensile_strength,
+            rock.fracture_energy,
+            rock.reference_width,
+        ],
         dtype=float,
     )
     table = np.asfortranarray(rock.table, dtype=float)

@@ -78,7 +78,8 @@ def softening_modulus(rock, length_m) -> np.ndarray:
     Raises
     ------
     ValueError
-        When a width is not positive or lies above the limit |H| < 2 G of a unique answer.
+        When a width is not positive, or lies above the limit |H| < 2 G of a unique answer or
+        above that of compressive softening without snap-back.
     """
     rock = as_material(rock)
     length = np.asarray(length_m, dtype=float)
@@ -91,6 +92,12 @@ def softening_modulus(rock, length_m) -> np.ndarray:
         raise ValueError(
             f"length_m = {float(np.max(length)):g} m: above {limit:.4g} m several crack planes "
             "have no unique return (|H| < 2 G); use smaller elements or a larger fracture energy"
+        )
+    limit = rock.compressive_width_limit
+    if np.any(length >= limit):
+        raise ValueError(
+            f"length_m = {float(np.max(length)):g} m: above {limit:.4g} m compressive softening is "
+            "steeper than elastic unloading; use smaller elements or a larger reference_size_mm"
         )
     return -length * rock.tensile_strength**2 / (2.0 * rock.fracture_energy)
 
@@ -209,10 +216,10 @@ class _Bench:
         self.triaxial = test in ("triaxial", "extension", "tension")
         self.pressure = pressure
         self.spring = spring if test == "stiff_confinement" else 0.0
-        self.knots = rock.table[0] if rock.options[2] else np.zeros(0)
+        self.table = rock.table_of_band(length)
+        self.knots = self.table[0] if rock.options[2] else np.zeros(0)
         self.scales = kernels.rock_scales(rock)
         self.packed = kernels.pack(rock)
-        self.table = self.packed.table
         self.softening = np.atleast_1d(softening_modulus(rock, length))
         stress = np.array([[-pressure, -pressure, -pressure, 0.0]])
         virgin = State.virgin(rock)

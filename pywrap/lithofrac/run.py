@@ -58,6 +58,7 @@ def plan(problem: Problem) -> dict:
             "axisymmetry": problem.axisymmetric,
             "yield check": any(m.options[3] for m in problem.materials),
             "Mohr-Coulomb planes": any(m.options[3] and m.options[2] for m in problem.materials),
+            "regularised softening": any(m.reference_width > 0.0 for m in problem.materials),
             "damping": problem.damping.fraction > 0.0 or bool(problem.damping.alpha),
             "pressure": bool(problem.pressure_loads),
             "contact": problem.contact is not None,

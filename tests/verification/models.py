@@ -20,6 +20,7 @@ class Elastic:
     density: float = 2700.0
     tensile_strength: float = 0.0
     fracture_energy: float = 0.0
+    reference_width: float = 0.0
     band_width: str = "sqrt_2A"
 
     @property
@@ -101,13 +102,7 @@ def element_path(material, nodes, path, axisymmetric=False, band_width=1e-3):
     values, forces, dissipated, critical = kernels.element_path(
         nodes.T,
         int(axisymmetric),
-        [
-            material.young,
-            material.poisson,
-            material.density,
-            material.tensile_strength,
-            material.fracture_energy,
-        ],
+        kernels.pack(material).constants,
         material.table,
         material.options,
         band_width,

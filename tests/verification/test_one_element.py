@@ -84,6 +84,22 @@ def test_element_and_bench_agree_on_the_same_strain(rock, axisymmetric, speed):
 
 
 @pytest.mark.verification
+@pytest.mark.parametrize("reference_mm", [0.8, 2.0])
+def test_element_and_bench_agree_on_softening_scaled_by_the_band(reference_mm):
+    material = Material.load("sandstone").model_copy(update={"reference_size_mm": reference_mm})
+    loads = (
+        hold("base", [0, 1], 1),
+        hold("top", [2], 1, -10.0, ramp=Ramp(0.0, 1e-6)),
+        hold("corner", [0], 0),
+    )
+    run = Run(problem(MESH, material, velocity_loads=loads))
+    softened = 0.0015  # where it starts
+    for element, _, _ in follow(run, 400):
+        softened = max(softened, element.plastic_strain[0])
+    assert softened > 0.01
+
+
+@pytest.mark.verification
 def test_a_ring_whose_hoop_strength_is_exhausted_closes_and_opens_again():
     """Thrown outwards against a spring: zz opens, is pushed shut, and is pulled open later.
 

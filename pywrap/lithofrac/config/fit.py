@@ -31,7 +31,16 @@ def misfits(case: Case) -> list[str]:
 
 
 def too_large(material: Material, width: float) -> str:
-    """Why elements of crack band width `width` [m] are refused."""
+    """Why elements of crack band width `width` [m] are refused, or nothing if they are not."""
+    if not width < material.compressive_width_limit:
+        return (
+            f"crack band width {width / MM:.4g} mm of the largest element is not below the limit "
+            f"of {material.compressive_width_limit / MM:.4g} mm for material.reference_size_mm = "
+            f"{material.reference_size_mm:g}, above which compressive softening is steeper than "
+            "elastic unloading"
+        )
+    if width < material.band_width_limit:
+        return ""
     return (
         f"crack band width {width / MM:.4g} mm of the largest element is not below the limit of "
         f"{material.band_width_limit / MM:.4g} mm, 2 Gf E / ((1 + nu) ft^2), above which softening "
@@ -130,13 +139,12 @@ def _fracture_problems(case: Case) -> list[str]:
 
 
 def _size_problems(case: Case) -> list[str]:
-    """Refuse elements above the limit of unique tension returns, by their nominal size."""
+    """Refuse elements above the limits of unique softening, by their nominal size."""
     nominal = case.scene.element_size
     width = case.material.band_width_of(0.5 * nominal**2)
-    if width < case.material.band_width_limit:
-        return []
+    why = too_large(case.material, width)
     key = SIZE_KEYS.get(case.scene.kind, "element_size_mm")
-    return [f"scene.{key} = {getattr(case.scene, key):g}: {too_large(case.material, width)}"]
+    return [f"scene.{key} = {getattr(case.scene, key):g}: {why}"] if why else []
 
 
 def _count_problems(scene: Scene) -> list[str]:

@@ -15,9 +15,11 @@ from pydantic import Field, ValidationError, ValidationInfo, field_validator, mo
 
 from lithofrac.config.base import (
     GPA,
+    MM,
     MPA,
     Density,
     FractureEnergy,
+    Length,
     Modulus,
     PlasticStrain,
     Pressure,
@@ -25,6 +27,7 @@ from lithofrac.config.base import (
     Strength,
 )
 from lithofrac.config.errors import ConfigError, sentences, suggestion
+from lithofrac.config.regularise import softening_onset, width_limit
 from lithofrac.config.yaml_file import read_yaml
 
 PACKAGED = Path(__file__).parents[1] / "_configs"  # copy of configs/ that is installed
@@ -71,6 +74,11 @@ class Material(Section):
     """Tension planes are checked against their softened, or against their old strength."""
     band_width: Literal["sqrt_2A", "sqrt_A"] = "sqrt_2A"
     """Crack band width h_c of a triangle of area A."""
+    reference_size_mm: Length | None = None
+    """Crack band width for which the table holds as it stands. In an element of width h_c the part
+    beyond the largest uniaxial strength is stretched by reference_size_mm / h_c, so that a
+    compressive band uses up the same energy per area in every mesh. Left out: the table holds in
+    every element, as in the paper."""
 
     @field_validator(*TENSION, *COLUMNS)
     @classmethod
@@ -105,6 +113,20 @@ class Material(Section):
     def _whole_table_or_none(self):
         if len({getattr(self, name) is None for name in COLUMNS}) > 1:
             raise ValueError(f"expected all of {', '.join(COLUMNS)}, or none")
+        return self
+
+    @model_validator(mode="after")
+    def _something_to_regularise(self):
+        if self.reference_size_mm is None:
+            return self
+        here = f"reference_size_mm = {self.reference_size_mm:g}"
+        if self.elastic or not self.compression or self.plastic_strain is None:
+            raise ValueError(f"{here}: there is no compressive softening to scale, leave it out")
+        if softening_onset(self.table) == len(self.plastic_strain) - 1:
+            raise ValueError(
+                f"{here}: the uniaxial strength is largest in the last row of the table, which "
+                "never softens, leave it out"
+            )
         return self
 
     @classmethod
@@ -210,6 +232,28 @@ class Material(Section):
             return float("inf")
         shear_twice = self.young / (1 + self.poisson)
         return 2 * self.fracture_energy * shear_twice / self.tensile_strength**2
+
+    @property
+    def reference_width(self) -> float:
+        """Crack band width [m] for which the table holds as it stands; 0: for every width."""
+        return (self.reference_size_mm or 0.0) * MM
+
+    @property
+    def compressive_width_limit(self) -> float:
+        """Crack band width [m] above which stretched softening snaps back; infinite without."""
+        if self.reference_size_mm is None:
+            return float("inf")
+        return width_limit(self.table, self.young, self.poisson, self.reference_width)
+
+    def table_of_band(self, width: float) -> np.ndarray:
+        """The hardening table, as `table`, that holds in a crack band of that width [m]."""
+        table = self.table
+        if self.reference_size_mm is not None:
+            rows = slice(softening_onset(table) + 1, None)
+            onset = table[0, softening_onset(table)]
+            stretch = self.reference_width / width
+            table[0, rows] = stretch * table[0, rows] + (1.0 - stretch) * onset
+        return table
 
     def band_width_of(self, area):
         """Crack band width h_c [m] of triangles of the given area [m2], any shape."""

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field, PrivateAttr, StringConstraints, ValidationError
+from pydantic import Field, PrivateAttr, StringConstraints, ValidationError, model_validator
 
 from lithofrac.config.base import Section
 from lithofrac.config.case import Case, check_case
@@ -27,6 +27,9 @@ class Entry(Section):
     """Dotted keys of the case file and the values that replace theirs."""
     realisations: int = Field(default=1, ge=1, le=1000)
     """Meshes of equal density that are run: NAME, NAME@seed2, NAME@seed3 and so on."""
+    twin: Name | None = None
+    """Case of the suite that this one is a variant of: held against it in the table `variants`, and
+    left out of the figures of its family."""
 
 
 class Suite(Section):
@@ -37,6 +40,17 @@ class Suite(Section):
     """Name of a case, which is also the name of its results folder -> what it is."""
     _file: Path = PrivateAttr(default=Path())
 
+    @model_validator(mode="after")
+    def _twins_are_cases(self):
+        for name, entry in self.cases.items():
+            if entry.twin is not None and (entry.twin not in self.cases or entry.twin == name):
+                others = [known for known in self.cases if known != name]
+                raise ValueError(
+                    f"cases.{name}.twin = {entry.twin}: expected another case of the suite, "
+                    f"{suggestion(entry.twin, others)}"
+                )
+        return self
+
     @property
     def names(self) -> list[str]:
         """All runs of the suite in the order of its cases, each realisation by its own name."""
@@ -45,6 +59,11 @@ class Suite(Section):
             for name, entry in self.cases.items()
             for seed in range(1, entry.realisations + 1)
         ]
+
+    @property
+    def variants(self) -> dict[str, str]:
+        """Name of each variant -> name of its twin."""
+        return {name: entry.twin for name, entry in self.cases.items() if entry.twin}
 
     def case(self, name: str, overrides: Mapping | None = None) -> Case:
         """The checked case of that name; `NAME@seed2` is another mesh of case NAME.

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from lithofrac.analysis import discrete, options, results, tables
 from lithofrac.analysis.punch import punch as punch_table
+from lithofrac.analysis.variants import variants as variants_table
 from lithofrac.data import DataError
 from lithofrac.plots import (
     energy,
@@ -20,6 +21,7 @@ from lithofrac.plots import (
     sandstone,
     single_element,
     style,
+    variants,
 )
 
 FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
@@ -34,6 +36,7 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "fracture_series": fractures.series,
     "events": events.figure,
     "punch": punch.figure,
+    "variants": variants.figure,
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "single_element": tables.single_element,
@@ -48,6 +51,7 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "cracks": discrete.cracks,
     "bands": discrete.bands,
     "punch": punch_table,
+    "variants": variants_table,
     "results": results.verdicts,
 }
 FORMATS = (".svg", ".png", ".pdf")

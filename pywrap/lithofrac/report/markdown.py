@@ -12,6 +12,7 @@ UNITS = {
     "seconds": "s",
     "J": "J",
     "J_m2": "J/m²",
+    "MJ_m3": "MJ/m³",
 }  # end of a column name -> unit shown in brackets
 
 PAGE = """<!DOCTYPE html>

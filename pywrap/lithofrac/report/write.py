@@ -18,6 +18,7 @@ TITLES = {
     "results": "Results",
     "cracks": "Discrete cracks: what opened and what it cost",
     "bands": "Angles of bands and cracks to the load axis",
+    "variants": "What the open choices change",
     "errors": "Distance from digitised curves",
     "run_time": "Run time and energy error",
 }  # tables of the whole report, in order; the others stand in the sheets

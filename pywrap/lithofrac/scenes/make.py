@@ -50,13 +50,15 @@ def make_problem(case: Case, mesh: Mesh) -> Problem:
     Raises
     ------
     ConfigError
-        When the largest element of the rock is above the limit of unique softening (eq. 16).
+        When the largest element of the rock is above a limit of unique softening (eq. 16, or a
+        stretched hardening table).
     """
     material = case.material
     areas = mesh.areas()[mesh.body == mesh.body_names.index(ROCK)]
     width = float(material.band_width_of(areas.max()))
-    if not width < material.band_width_limit:
+    why = too_large(material, width)
+    if why:
         key = SIZE_KEYS.get(case.scene.kind, "element_size_mm")
         value = getattr(case.scene, key)
-        raise ConfigError(f"scene.{key} = {value:g}: {too_large(material, width)}")
+        raise ConfigError(f"scene.{key} = {value:g}: {why}")
     return SCENES[case.scene.kind].problem(case, mesh)

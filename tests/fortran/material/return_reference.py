@@ -41,7 +41,7 @@ class Law:
     """Elasticity and strength of a rock in numpy."""
 
     def __init__(self, rock: kernels.PackedRock):
-        young, poisson, _, self.ft, self.gf = rock.constants
+        young, poisson, _, self.ft, self.gf, _ = rock.constants
         self.g2 = young / (1.0 + poisson)
         self.lame = self.g2 * poisson / (1.0 - 2.0 * poisson)
         self.table = rock.table

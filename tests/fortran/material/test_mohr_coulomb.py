@@ -42,7 +42,7 @@ def test_moduli_follow_from_young_and_poisson():
 def test_strength_scale_is_positive_even_for_a_rock_of_sand_or_steel():
     sand = packed("sandstone", cohesion=0.0)
     steel = replace(sand, options=np.array([0, 0, 1, 0], dtype=np.int32))
-    steel = replace(steel, constants=np.array([210e9, 0.3, 7850.0, 0.0, 0.0]))
+    steel = replace(steel, constants=np.array([210e9, 0.3, 7850.0, 0.0, 0.0, 0.0]))
     for rock in (sand, steel):
         scales = kernels.rock_scales(rock)
         assert scales.strength_scale > 0.0

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from return_reference import (
     EXPLICIT,
+    IMPLICIT,
     ROCKS,
     TOTAL,
     Law,
@@ -171,6 +172,21 @@ def test_explicit_coupling_checks_planes_against_the_old_strength(name, n_random
     implicit = kernels.return_principal(packed(name), softening, trial, ft, e_old)
     # The implicit return is one of the explicit ones, and the smallest strain wins.
     assert np.all(results[0] <= implicit[0] * (1 + 1e-9) + 1e-12)
+
+
+@pytest.mark.parametrize("name", ROCKS)
+def test_coupling_plays_no_part_where_no_plane_is_met(name, n_random):
+    law = Law(packed(name))
+    softening, trial, ft, e_old = random_returns(law, np.random.default_rng(10), n_random(20_000))
+    implicit, explicit = (
+        kernels.return_principal(packed(name, coupling=coupling), softening, trial, ft, e_old)
+        for coupling in (IMPLICIT, EXPLICIT)
+    )
+    below = law.stress(trial, implicit[1]) < law.softened(ft, softening, implicit[1])
+    alone = below.all(axis=1) & (trial < ft).all(axis=1) & (implicit[3] > 0)
+    assert alone.sum() > 0.05 * len(alone)
+    for one, other in zip(implicit, explicit, strict=True):
+        np.testing.assert_allclose(one[alone], other[alone], rtol=1e-9, atol=1e-15)
 
 
 def test_two_sets_that_share_their_stress_are_mixed():

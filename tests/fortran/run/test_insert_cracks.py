@@ -200,3 +200,11 @@ def test_nodes_on_cut_edges_are_driven_with_their_side(cracking):
     nodes = run.mesh()[0]
     top = nodes[:, 1] == nodes[:, 1].max()
     assert np.all(run.nodes()[1][top, 1] == -5.0)
+
+
+@MODES
+def test_nodes_without_way_are_counted_and_not_how_often_they_were_looked_at(cracking, mode):
+    """Each is looked at again whenever its failure has grown by a twentieth."""
+    run = cracking("burst", mode).start()
+    run.advance(1000)
+    assert 0 < run.sizes().closed < run.sizes().nodes - run.sizes().cracks

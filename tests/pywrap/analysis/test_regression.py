@@ -27,6 +27,7 @@ NOT_WATCHED = {
     "tautona": "measured",
     "zigong": "measured",
     "zigong_fit": "measured",
+    "variants": "differences between runs that are watched",
     "run_time": "of the machine; the rest stands in summary.json",
     "results": "words made of the other tables",
 }

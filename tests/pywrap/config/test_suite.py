@@ -125,3 +125,23 @@ def test_mistakes_are_named_with_the_entry(tmp_path):
         f"{path}: cases: expected at least this many items: 1"
     )
     assert "cases.a/b" in refusal(path, head + "  a/b: {extends: c}")
+
+
+def test_a_twin_is_another_case_of_the_suite(tmp_path):
+    path = tmp_path / "s.yaml"
+    case = Path("configs/cases/kirsch.yaml").resolve()
+    head = f"title: t\ncases:\n  a: {{extends: {case}}}\n"
+    path.write_text(head + f"  b: {{extends: {case}, twin: a}}\n")
+    assert load_suite(path).variants == {"b": "a"}
+    for twin in ("c", "b"):
+        said = refusal(path, head + f"  b: {{extends: {case}, twin: {twin}}}\n")
+        assert f"cases.b.twin = {twin}: expected another case of the suite" in said
+
+
+def test_every_variant_of_the_suite_differs_from_its_twin_in_what_its_name_says():
+    suite = load_suite("configs/suite.yaml")
+    assert suite.variants
+    for name, twin in suite.variants.items():
+        one, other = suite.case(name), suite.case(twin)
+        assert one.model_dump(exclude={"title"}) != other.model_dump(exclude={"title"}), name
+        assert one.scene.kind == other.scene.kind

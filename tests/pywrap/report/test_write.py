@@ -30,6 +30,7 @@ def out(make_run, make_bench, data_folder, tmp_path):
         "single_element": bench,
         "tautona": [QUARTZITE],
         "kirsch": [],
+        "variants": [ROOT / "configs" / "suite.yaml", *runs],
     }
     (tmp_path / "out" / "tables").mkdir(parents=True)
     for name in TABLES:
