@@ -43,10 +43,21 @@ TABLES = {
     "run_time": RUNS,
     **{"cracks": RUNS, "bands": RUNS, "punch": OWN},
     "variants": [SUITE, *PAIRS],
+    "claims": ["reports/claims_bands.csv", *RUNS],
 }
+TABLES["claims"] += [
+    f"{OUT}/tables/{name}.csv"
+    for name in ("hole_initiation", "size_effect", "hole_fits")
+    if name in TABLES
+]
 COMPARED = {
     "punch": [run for run in OWN if "/punch_" in run],
+    "punch_patterns": [run for run in OWN if "/punch_" in run],
     "fracture_series": [run for run in OWN if "/sandstone_soft_p" in run],
+    "stiffness_sweep": [
+        run for run in OWN if "/sandstone_plane" in run or "/sandstone_soft" in run
+    ],
+    "fracture_evolution": [run for run in OWN if "/sandstone_plane_strain_p10/" in run],
     "variants": [SUITE, *PAIRS] if VARIANTS else [],
 }
 ALWAYS = ["stress_strain.svg", "strength.svg", "measured.svg", "sandstone.png"]

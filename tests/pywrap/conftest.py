@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
+from punch_runs import as_punch
 
 from lithofrac.analysis.mohr_coulomb import peak_strength, residual_strength
 from lithofrac.config.material import Material
@@ -269,5 +270,16 @@ def digitise(tmp_path, data_folder):
         rows = "\n".join(f"{x}, {y}" for x, y in points) if not isinstance(points, str) else points
         (folder / f"{name}.csv").write_text(rows)
         return data
+
+    return made
+
+
+@pytest.fixture
+def make_punch_run(make_run):
+    """make_punch_run(name, gf=60, compression=True, cracks=None) -> folder (`punch_runs`)."""
+
+    def made(name, gf=60.0, compression=True, cracks=None):
+        folder = make_run(name, test="punch", confinement=4.5)
+        return as_punch(folder, gf, compression, cracks)
 
     return made

@@ -83,8 +83,8 @@ class Frame:
         return edges[np.sort(first[count == 1])]
 
 
-def last_frame(folder: Path) -> Frame:
-    """Fields at the last moment that a run has written, as its `fields.pvd` lists them.
+def frame_times(folder: Path) -> list[tuple[float, Path]]:
+    """Moments [s] at which a run has written fields and their files, as its `fields.pvd` says.
 
     Raises
     ------
@@ -92,5 +92,10 @@ def last_frame(folder: Path) -> Frame:
         When the run has written no fields.
     """
     series = ElementTree.parse(folder / "fields.pvd").getroot().iter("DataSet")
-    last = max(series, key=lambda entry: float(entry.get("timestep")))
-    return Frame.load(folder / last.get("file"), float(last.get("timestep")))
+    return sorted((float(entry.get("timestep")), folder / entry.get("file")) for entry in series)
+
+
+def last_frame(folder: Path) -> Frame:
+    """Fields at the last moment that a run has written; raises as `frame_times`."""
+    time_s, path = frame_times(folder)[-1]
+    return Frame.load(path, time_s)

@@ -7,19 +7,23 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from lithofrac.analysis import discrete, options, results, tables
+from lithofrac.analysis.claims import claims
 from lithofrac.analysis.punch import punch as punch_table
 from lithofrac.analysis.variants import variants as variants_table
 from lithofrac.data import DataError
 from lithofrac.plots import (
     energy,
     events,
+    evolution,
     fractures,
     gallery,
     measured,
     mesh,
     punch,
+    punch_patterns,
     sandstone,
     single_element,
+    stiffness,
     style,
     variants,
 )
@@ -28,14 +32,17 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "single_element": single_element.figure,
     "stress_strain": sandstone.stress_strain,
     "strength": sandstone.strength,
+    "stiffness_sweep": stiffness.figure,
     "measured": measured.figure,
     "mesh": mesh.figure,
     "energy": energy.figure,
     "gallery": gallery.figure,
     "fractures": fractures.figure,
     "fracture_series": fractures.series,
+    "fracture_evolution": evolution.figure,
     "events": events.figure,
     "punch": punch.figure,
+    "punch_patterns": punch_patterns.figure,
     "variants": variants.figure,
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
@@ -53,6 +60,7 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "punch": punch_table,
     "variants": variants_table,
     "results": results.verdicts,
+    "claims": claims,
 }
 FORMATS = (".svg", ".png", ".pdf")
 

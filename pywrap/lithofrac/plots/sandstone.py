@@ -88,7 +88,8 @@ def strength(inputs: list[Path], data: Path) -> Figure:
     for (marker, colour), (stiffness, discrete) in zip(SWEEP, sweep, strict=False):
         own = [run for run in runs if (run.stiffness, run.discrete) == (stiffness, discrete)]
         words = ", discrete" if discrete else ""
-        draw_series(panel, own, marker, colour, f"plane strain, k = {stiffness:g} E{words}")
+        label = f"plane strain, k = {stiffness:g} E{words}"
+        draw_series(panel, own, marker, colour, label, hollow=discrete)
     digitised = load_curves(data, "10")
     for marker, curve in zip(SERIES, digitised, strict=False):
         panel.errorbar(
@@ -152,11 +153,17 @@ def draw_bench(axes: Axes, curves: list[Bench]) -> None:
         axes.plot(*zip(*peaks, strict=True), "--", color=style.GREY, label=label)
 
 
-def draw_series(axes: Axes, runs: list[Run], marker: str, colour: str, label: str) -> None:
-    """Draw first peaks; a run without one is a hollow mark on the axis with "no peak"."""
+def draw_series(
+    axes: Axes, runs: list[Run], marker: str, colour: str, label: str, hollow: bool = False
+) -> None:
+    """Draw first peaks; a run without one is a hollow mark on the axis with "no peak".
+
+    Hollow marks are larger, so that what lies beneath them is seen.
+    """
     peaks = [(run.confinement_MPa, run.peak.stress) for run in runs if run.peak]
     if peaks:
-        axes.plot(*zip(*peaks, strict=True), marker, color=colour, label=label)
+        looks = {"mfc": "none", "ms": 9.0} if hollow else {}
+        axes.plot(*zip(*peaks, strict=True), marker, color=colour, label=label, **looks)
     without = [run.confinement_MPa for run in runs if run.peak is None]
     if without:
         height = np.full(len(without), 0.02)

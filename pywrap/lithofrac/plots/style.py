@@ -75,15 +75,15 @@ def flat(colour: str) -> ListedColormap:
 
 
 def badge(axes: Axes, text: str, corner: str = "lower right") -> None:
-    """A note inside the axes that cannot be overlooked."""
+    """A note inside the axes, or "above" them, that cannot be overlooked."""
     vertical, horizontal = corner.split()
     axes.text(
         {"left": 0.03, "right": 0.97}[horizontal],
-        {"lower": 0.04, "upper": 0.96}[vertical],
+        {"lower": 0.04, "center": 0.5, "upper": 0.96, "above": 1.03}[vertical],
         text,
         transform=axes.transAxes,
         ha=horizontal,
-        va={"lower": "bottom", "upper": "top"}[vertical],
+        va={"lower": "bottom", "center": "center", "upper": "top", "above": "bottom"}[vertical],
         fontsize=8.0,
         color=BLACK,
         zorder=10,

@@ -14,6 +14,8 @@ from lithofrac.report.sheets import place
 
 SHEETS = Path("reports", "sheets")
 ORIGIN = ("version", "commit", "native", "machine", "finished")  # of run_time
+GALLERY = "gallery"  # beside the sheets: the figures that are committed
+DRAWN = "drawn"  # column that names a figure
 TITLES = {
     "results": "Results",
     "cracks": "Discrete cracks: what opened and what it cost",
@@ -51,13 +53,16 @@ def write_report(out_dir: Path, file: Path, sheets: Path = SHEETS) -> None:
     tables, captions = read_tables(out_dir), sheets.parent / "captions"
     old = file.read_text(encoding="utf-8") if file.is_file() else ""
     sheet = sheets / f"{file.stem}.md"
+    committed = linked(tables, sheets.parent / GALLERY, file.parent)
     if has_blocks(old) and file.suffix == ".md" and not file.is_relative_to(out_dir):
-        text = fill(old, tables, str(file))
+        text = fill(old, committed, str(file))
     elif sheet.is_file():
-        text = fill(sheet.read_text(encoding="utf-8"), tables, str(sheet))
+        text = fill(sheet.read_text(encoding="utf-8"), committed, str(sheet))
         here = None if file.suffix == ".html" else file.parent
         text = with_figures(text, tables, out_dir, here, captions)
     else:
+        if file.suffix == ".md":
+            tables = linked(tables, out_dir / "figures", file.parent)
         text = whole_report(tables, sheets)
         if file.suffix == ".md":
             text = with_figures(text, tables, out_dir, file.parent, captions)
@@ -117,6 +122,20 @@ def embedded(path: Path) -> str:
     """A picture as an address that holds the picture itself."""
     data = base64.b64encode(path.read_bytes()).decode("ascii")
     return f"data:{TYPES[path.suffix]};base64,{data}"
+
+
+def linked(tables: dict[str, pd.DataFrame], pictures: Path, here: Path) -> dict[str, pd.DataFrame]:
+    """The tables with links, relative to `here`, for the figures they name that are there."""
+
+    def link(name: str) -> str:
+        drawn = [pictures / str(name), (pictures / str(name)).with_suffix(".png")]
+        there = next((path for path in drawn if path.is_file()), None)
+        return f"[{name}]({os.path.relpath(there, here)})" if there else name
+
+    return {
+        key: table.assign(**{DRAWN: table[DRAWN].map(link)}) if DRAWN in table else table
+        for key, table in tables.items()
+    }
 
 
 def provenance(tables: dict[str, pd.DataFrame]) -> str:

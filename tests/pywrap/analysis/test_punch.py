@@ -15,7 +15,15 @@ def test_peak_fall_and_end_are_those_of_the_curve(make_cracked_run, data_folder)
     assert row["first_peak_MPa"] == row["largest_stress_MPa"] == Run(folder).peak.stress
     assert row["lowest_after_peak_MPa"] == pytest.approx(row["stress_at_end_MPa"])
     assert row["lowest_after_peak_MPa"] < 0.5 * row["first_peak_MPa"]
-    assert (row["cracks"], row["compressive_failure"], row["note"]) == ("inter-element", "on", "")
+    assert (row["cracks"], row["compressive_failure"], row["note"]) == (
+        "inter-element",
+        "on",
+        "no regain",
+    )
+    assert row["a_to_b_percent"] == pytest.approx(
+        100.0 * (1.0 - row["lowest_after_peak_MPa"] / row["first_peak_MPa"])
+    )
+    assert np.isnan(row["b_to_c_percent"]) and row["strain_at_d_percent"] > 0.0
 
 
 def test_curve_that_never_falls_has_no_peak(make_run, data_folder):

@@ -27,6 +27,7 @@ NOT_WATCHED = {
     "tautona": "measured",
     "zigong": "measured",
     "zigong_fit": "measured",
+    "claims": "verdicts on runs that are watched",
     "variants": "differences between runs that are watched",
     "run_time": "of the machine; the rest stands in summary.json",
     "results": "words made of the other tables",

@@ -46,6 +46,17 @@ def test_tension_alone_has_a_panel_of_its_own(runs, data_folder):
     assert alone.get_title(loc="left") == "tension alone"
 
 
+def test_variants_of_the_discrete_run_have_looks_and_names_of_their_own(make_punch, data_folder):
+    names = ("punch_tension_only", "punch_tension_only_coarse", "punch_tension_only_gf300")
+    runs = [make_punch(name, 60, discrete=True, compression=False) for name in names]
+    panel = punch.figure(runs, data_folder).axes[0]
+    assert [name.split(",")[0] for name in legend(panel)] == [
+        "discrete", "tension_only_coarse", "tension_only_gf300",
+    ]  # fmt: skip
+    drawn = [line for line in panel.get_lines() if not line.get_label().startswith("_")]
+    assert len({(line.get_color(), line.get_linestyle()) for line in drawn}) == 3
+
+
 def test_curves_stand_in_the_order_of_fracture_energy(runs, data_folder):
     names = legend(punch.figure(runs, data_folder).axes[0])
     assert ["60 J/m²" in names[0], "1200 J/m²" in names[1]] == [True, True]
@@ -74,3 +85,12 @@ def test_digitised_curve_of_its_figure_replaces_the_note(runs, digitise):
     both, alone = punch.figure(runs, data).axes
     assert BADGE not in [text.get_text() for text in both.findobj(Text)]
     assert BADGE in [text.get_text() for text in alone.findobj(Text)]
+
+
+def test_stages_are_lettered_on_the_discrete_curve_and_lacking_ones_are_said(runs, data_folder):
+    """The curve falls once, to its residual: B and D are one point, and there is no C."""
+    for panel in punch.figure(runs, data_folder).axes:
+        words = [text.get_text() for text in panel.findobj(Text)]
+        assert "A" in words and "B, D" in words and "C" not in words
+    both = punch.figure(runs, data_folder).axes[0]
+    assert "punch_discrete: no regain" in [text.get_text() for text in both.findobj(Text)]

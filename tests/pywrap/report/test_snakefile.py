@@ -212,7 +212,7 @@ def test_cracks_and_comparisons_are_drawn_where_the_suite_has_them_and_only_ther
 """
     (tree / "configs" / "six.yaml").write_text(text + more)
     jobs = planned(tree, suite="six")
-    assert (jobs["simulate"], jobs["plot_cracks"], jobs["plot_compared"]) == (3, 2, 2)
+    assert (jobs["simulate"], jobs["plot_cracks"], jobs["plot_compared"]) == (3, 2, 4)
     assert not {"plot_cracks", "plot_compared"} & set(planned(tree))
 
 

@@ -27,6 +27,7 @@ def out(make_run, make_bench, data_folder, tmp_path):
     inputs = {
         "results": [ROOT / "reports" / "bands.csv", QUARTZITE, *bench]
         + [run / "summary.json" for run in runs],
+        "claims": [ROOT / "reports" / "claims_bands.csv", *runs],
         "single_element": bench,
         "tautona": [QUARTZITE],
         "kirsch": [],
@@ -60,7 +61,7 @@ def test_report_shows_the_figures_that_are_there_with_their_captions(out):
     text = (out / "report.md").read_text()
     assert 'src="figures/strength.svg"' in text
     assert "Strength of the sandstone specimens against confinement" in text
-    assert "stress_strain.svg" not in text
+    assert 'src="figures/stress_strain.svg"' not in text
 
 
 def test_page_of_a_scene_holds_its_figures_and_captions_in_itself(out):
@@ -138,3 +139,13 @@ def test_folder_without_tables_is_refused_and_nothing_is_written(tmp_path):
     with pytest.raises(DataError, match=r"tables: holds no \.csv"):
         write_report(tmp_path, tmp_path / "report.md", SHEETS)
     assert not list(tmp_path.iterdir())
+
+
+def test_figure_that_a_claim_names_is_linked_where_it_is_there(out):
+    link = "[punch.svg](figures/punch.svg)"
+    write_report(out, out / "report.md", SHEETS)
+    assert link not in (out / "report.md").read_text()
+    (out / "figures").mkdir()
+    (out / "figures" / "punch.svg").touch()
+    write_report(out, out / "report.md", SHEETS)
+    assert link in (out / "report.md").read_text()

@@ -1,0 +1,227 @@
+"""Claims on the hole in a block (Klerck 2004, section 3.3, Figs 12 to 16).
+
+Initiation stresses are those of the paper's own criterion: of single runs from the table
+`hole_initiation`, means over the realisations of a mesh from the table `size_effect`.
+"""
+
+import re
+
+import numpy as np
+import pandas as pd
+from scipy.stats import spearmanr
+
+from lithofrac.analysis.claim_parts import (
+    CannotCheckError,
+    Check,
+    Source,
+    Value,
+    distance,
+    largest,
+    smallest,
+)
+from lithofrac.analysis.hole_cracks import direction_deg, hole_radius, zoned_cracks
+from lithofrac.analysis.runs import Run
+
+MAIN = re.compile(r"hole_r\d+\.\d(@seed\d+)?")  # blocks similar at every radius
+SHOWN = re.compile(r"hole_r25\.0(@seed\d+)?")  # the radius of Figs 14 and 15
+SERIES = "similar"  # the same in the tables
+CRITERION, STRESS = "curvature", "initiation_MPa"
+AFTER = "after the largest stress"  # note of what begins in a block that has failed
+ZONES = ("primary", "remote", "sidewall")
+FIGURES = dict(zip(ZONES, ("16a", "16b", "16c"), strict=True))
+APART = 0.01  # relative difference of stress at which both sides do not begin at once
+
+
+def initiation(source: Source) -> pd.DataFrame:
+    """Rows of the paper's criterion that have a stress before the largest, R of Fig. 15."""
+    table = source.table("hole_initiation")
+    chosen = table["case"].map(lambda name: SHOWN.fullmatch(name) is not None)
+    chosen &= (table["criterion"] == CRITERION) & (table["note"] != AFTER)
+    table = table[chosen].dropna(subset=STRESS)
+    if table.empty:
+        raise CannotCheckError("the table hole_initiation has no initiation at R = 25 mm")
+    return table
+
+
+def by_radius(source: Source, zone: str, needed: int = 3) -> pd.Series:
+    """Mean initiation stress over the realisations [MPa], by rising radius [mm]."""
+    table = source.table("size_effect")
+    chosen = (table["series"] == SERIES) & (table["criterion"] == CRITERION)
+    table = table[chosen & (table["zone"] == zone)]
+    means = table.set_index("radius_mm")["mean_MPa"].dropna().sort_index()
+    if len(means) < needed:
+        raise CannotCheckError(f"{zone} initiation at {len(means)} of at least {needed} radii")
+    return means
+
+
+def _order(source: Source) -> dict[str, Value]:
+    table = initiation(source).pivot_table(STRESS, "case", "zone")
+    missing = [zone for zone in ZONES if zone not in table]
+    if missing:
+        raise CannotCheckError(f"no {missing[0]} initiation at R = 25 mm")
+    remote, sidewall = table["remote"] - table["primary"], table["sidewall"] - table["remote"]
+    return {"remote": smallest(remote.to_dict()), "sidewall": smallest(sidewall.to_dict())}
+
+
+def _bound(source: Source) -> dict[str, Value]:
+    table = initiation(source)
+    return {"largest": largest(table.groupby("zone")[STRESS].max().to_dict())}
+
+
+def _cracked(source: Source, cases: re.Pattern, zone: str) -> dict[str, pd.DataFrame]:
+    """Cracks of a zone by run, of those runs that have any there."""
+    runs = [run for name, run in source.runs.items() if cases.fullmatch(name) and run.discrete]
+    if not runs:
+        raise CannotCheckError("no run with cracks at a hole")
+    tables = {run.name: zoned_cracks(run) for run in runs}
+    tables = {name: table[table["zone"] == zone] for name, table in tables.items()}
+    tables = {name: table for name, table in tables.items() if len(table)}
+    if not tables:
+        raise CannotCheckError(f"no {zone} crack in any of {len(runs)} runs")
+    return tables
+
+
+def _primary_parallel(source: Source) -> dict[str, Value]:
+    tables = _cracked(source, MAIN, "primary")
+    return {"direction": Value(direction_deg(pd.concat(tables.values())), f"runs: {len(tables)}")}
+
+
+def _remote_parallel(source: Source) -> dict[str, Value]:
+    """Each side by itself: cracks that lean to both sides would have an upright mean."""
+    tables = pd.concat(_cracked(source, MAIN, "remote").values())
+    sides = {-1: "left", 1: "right"}
+    angles = {sides[side]: direction_deg(table) for side, table in tables.groupby("side")}
+    return {"direction": largest(angles)}
+
+
+def _place(source: Source) -> dict[str, Value]:
+    tips, walls = {}, {}
+    for name, table in _cracked(source, SHOWN, "remote").items():
+        run, first = source.run(name), table.iloc[0]
+        walls[name] = float(first["radius"]) - 1.0
+        tips[name] = _to_primary(run, first) / hole_radius(run)
+    return {"to_tip": largest(tips), "from_wall": smallest(walls)}
+
+
+def _to_primary(run: Run, crack: pd.Series) -> float:
+    """Distance of a crack from the outer end of the primary one at that time [mm]."""
+    table = zoned_cracks(run)
+    table = table[(table["zone"] == "primary") & (table["time_s"] <= crack["time_s"])]
+    if table.empty:
+        return float("nan")
+    ends = np.concatenate([table[[f"x{i}_mm", f"y{i}_mm"]].to_numpy() for i in (1, 2)])
+    tip = ends[np.argmax(np.linalg.norm(ends, axis=1))]
+    middle = 0.5 * np.array([crack["x1_mm"] + crack["x2_mm"], crack["y1_mm"] + crack["y2_mm"]])
+    return float(np.linalg.norm(middle - tip))
+
+
+def _growth(source: Source) -> dict[str, Value]:
+    tables = _cracked(source, SHOWN, "remote")
+    inward = {name: _first(table) - table["radius"].min() for name, table in tables.items()}
+    outward = {name: table["radius"].max() - _first(table) for name, table in tables.items()}
+    return {"inward": smallest(inward), "outward": smallest(outward)}
+
+
+def _first(table: pd.DataFrame) -> float:
+    return float(table["radius"].iloc[0])
+
+
+def _apart(source: Source) -> dict[str, Value]:
+    """A side without any remote crack counts as one that does not begin at once."""
+    tables = _cracked(source, MAIN, "remote")
+    apart = []
+    for table in tables.values():
+        first = table.groupby("side")["stress_MPa"].first()
+        apart.append(len(first) < 2 or first.max() > (1.0 + APART) * first.min())
+    return {"share": Value(100.0 * float(np.mean(apart)), f"runs: {len(tables)}, upper half")}
+
+
+def _breakout(source: Source) -> dict[str, Value]:
+    table = pd.concat(_cracked(source, MAIN, "sidewall").values())
+    compressive = table.loc[table["mode"] != "tensile", "length_mm"].sum()
+    share = float(compressive / table["length_mm"].sum())
+    return {"compressive_share": Value(100.0 * share, f"{len(table)} cracks")}
+
+
+def _agreement(source: Source) -> dict[str, Value]:
+    curves = [curve for figure in FIGURES.values() for curve in _known(source, figure)]
+    if not curves:
+        source.experiments("16a")
+    stresses = {f"hole_{zone}": by_radius(source, zone) for zone in ZONES}
+    x = {name: means.index.to_numpy() for name, means in stresses.items()}
+    return {"rms": distance(curves, x, {name: one.to_numpy() for name, one in stresses.items()})}
+
+
+def _known(source: Source, figure: str):
+    try:
+        return source.experiments(figure)
+    except CannotCheckError:
+        return []
+
+
+def _strain(source: Source) -> dict[str, Value]:
+    source.experiments("15")
+    raise CannotCheckError("no initiation strain is read from the digitised curves")
+
+
+def _size(source: Source) -> dict[str, Value]:
+    quotients, left = {}, {}
+    for zone in ZONES:
+        means = by_radius(source, zone)
+        radius, stress = means.index.to_numpy(), means.to_numpy()
+        quotients[zone] = stress[-1] / stress[0]
+        late = np.interp(0.5 * radius[-1], radius, stress) - stress[-1]
+        fall = stress[0] - stress[-1]
+        left[zone] = 100.0 * late / fall if fall > 0.0 else float("nan")
+    return {"ratio": largest(quotients), "slope": largest(left)}
+
+
+def _falls(zone: str):
+    def measures(source: Source) -> dict[str, Value]:
+        means = by_radius(source, zone)
+        same = means.nunique() == 1
+        rank = 0.0 if same else float(spearmanr(means.index, means).statistic)
+        note = f"{means.iloc[0]:.1f} to {means.iloc[-1]:.1f} MPa over {len(means)} radii"
+        ratio = float(means.iloc[-1] / means.iloc[0])
+        return {"correlation": Value(rank, note), "ratio": Value(ratio)}
+
+    return measures
+
+
+def _asymptotes(source: Source) -> dict[str, Value]:
+    """Those that the radii determine; a fit that does not says so in its note."""
+    table = source.table("hole_fits")
+    chosen = (table["series"] == SERIES) & (table["criterion"] == CRITERION) & table["note"].isna()
+    ends = table[chosen].set_index("zone")["asymptote_MPa"].dropna().sort_values()
+    if len(ends) < 2:
+        raise CannotCheckError(f"{len(ends)} of 3 asymptotes are determined")
+    gap = 100.0 * float(np.diff(ends).min() / ends.mean())
+    words = ", ".join(f"{zone} {value:.1f} MPa" for zone, value in ends.items())
+    return {"gap": Value(gap, words)}
+
+
+def _below(zone: str):
+    def measures(source: Source) -> dict[str, Value]:
+        stress = by_radius(source, zone)
+        return {"largest": Value(float(stress.max()), f"at R = {stress.idxmax():g} mm")}
+
+    return measures
+
+
+GAUGES, SIZE, STAGES = "hole_gauges.svg", "size_effect.svg", "hole_patterns.svg"
+HOLE = {
+    "hole_order": Check(_order, GAUGES),
+    "hole_primary_parallel": Check(_primary_parallel, STAGES),
+    "hole_remote_parallel": Check(_remote_parallel, STAGES),
+    "hole_remote_place": Check(_place, STAGES),
+    "hole_remote_growth": Check(_growth, STAGES),
+    "hole_remote_apart": Check(_apart, STAGES),
+    "hole_breakout": Check(_breakout, STAGES),
+    "hole_agreement": Check(_agreement, SIZE),
+    "hole_strain": Check(_strain, GAUGES),
+    "hole_stress_bound": Check(_bound, GAUGES),
+    "size_effect": Check(_size, SIZE),
+    "size_asymptotes": Check(_asymptotes, SIZE),
+    **{f"size_{zone}_falls": Check(_falls(zone), SIZE) for zone in ZONES},
+    **{f"size_{zone}_bound": Check(_below(zone), SIZE) for zone in ZONES},
+}
