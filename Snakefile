@@ -29,6 +29,12 @@ PAIRED = dict.fromkeys(name for pair in VARIANTS.items() for name in pair)
 PAIRS = expand(f"{OUT}/runs/{{case}}/summary.json", case=PAIRED)
 OWN = [run for run in RUNS if run.split("/")[-2] not in VARIANTS]
 SANDSTONE = [run for run in OWN if "/sandstone_" in run]
+DRAWN = ["hole_r25.0", "hole_r16.3", "hole_r06.4"]  # of the paper's Figs 13 and 14
+HOLES = [run for run in OWN if "/hole_" in run]
+INITIATION = [
+    f"{OUT}/tables/hole_initiation.csv",
+    *HOLES,
+]  # made once, read by the others
 CURVES = expand(BENCH, rock=ROCKS, test="triaxial")
 STIFF = expand(BENCH, rock="sandstone", test="stiff_confinement")
 TABLES = {
@@ -44,6 +50,8 @@ TABLES = {
     **{"cracks": RUNS, "bands": RUNS, "punch": OWN},
     "variants": [SUITE, *PAIRS],
     "claims": ["reports/claims_bands.csv", *RUNS],
+    **{"hole_initiation": HOLES, "size_effect": INITIATION, "hole_fits": INITIATION},
+    "hole_checks": ["reports/bands.csv", *INITIATION],
 }
 TABLES["claims"] += [
     f"{OUT}/tables/{name}.csv"
@@ -59,6 +67,9 @@ COMPARED = {
     ],
     "fracture_evolution": [run for run in OWN if "/sandstone_plane_strain_p10/" in run],
     "variants": [SUITE, *PAIRS] if VARIANTS else [],
+    "hole_gauges": [run for run in HOLES if "/hole_r25.0/" in run],
+    "hole_patterns": [run for run in HOLES if run.split("/")[-2] in DRAWN],
+    "size_effect": INITIATION if HOLES else [],
 }
 ALWAYS = ["stress_strain.svg", "strength.svg", "measured.svg", "sandstone.png"]
 FIGURES = expand(
@@ -86,6 +97,10 @@ GALLERY = {
     ),
     "fracture_series": ("fracture_series", COMPARED["fracture_series"]),
     "strength": ("strength", [*SANDSTONE, *STIFF]),
+    **{
+        name: (name, COMPARED[name])
+        for name in ("size_effect", "hole_patterns", "hole_gauges")
+    },
 }
 GALLERY = {name: (kind, runs) for name, (kind, runs) in GALLERY.items() if runs}
 

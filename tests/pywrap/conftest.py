@@ -274,6 +274,105 @@ def digitise(tmp_path, data_folder):
     return made
 
 
+LIMESTONE = ROOT / "configs" / "materials" / "tyndall_limestone.yaml"
+GAUGES = {
+    "crown": ((0.0, 1.02), "primary"),
+    "sidewall_right": ((1.02, 0.0), "sidewall"),
+    "sidewall_left": ((-1.02, 0.0), "sidewall"),
+    "remote_01": ((0.8, 1.4), "remote"),
+    "remote_02": ((-0.8, 1.4), "remote"),
+}  # probe -> position in radii, zone
+HOLE_SLOPE = {"primary": 45e-6, "remote": 20e-6, "sidewall": -140e-6}  # strain per MPa
+HOLE_KINK = {"primary": 4.0, "remote": 8.0, "sidewall": 10.0}  # MPa
+
+
+def hole_probes(times, stress, kinks, wake, whole):
+    """Rows of `probes.parquet`: straight to the kink of its zone, then twice as steep.
+
+    From there on the tensile strength fades over 8 MPa. A gauge in `wake` bends and stays whole.
+    """
+    tables = []
+    for number, (name, (_, zone)) in enumerate(GAUGES.items()):
+        at = kinks[zone] + (0.5 if name.endswith(("_02", "left")) else 0.0)
+        beyond = np.maximum(stress - at, 0.0) * (0.0 if whole else 1.0)
+        principal = HOLE_SLOPE[zone] * (stress + beyond)
+        strength = 1.5 * np.clip(1.0 - np.maximum.accumulate(beyond) / 8.0, 0.0, 1.0)
+        if name in wake:
+            strength = np.full_like(stress, 1.5)
+        # The other principal strain is opposite; both are turned by 30 degrees.
+        tables.append(
+            pd.DataFrame(
+                {
+                    "probe": name, "element": number, "time_s": times,
+                    "stress_xx_MPa": 1.1 * stress if zone != "sidewall" else 0.0,
+                    "stress_yy_MPa": -3.3 * stress if zone == "sidewall" else 0.0,
+                    "stress_zz_MPa": 0.0, "stress_xy_MPa": 0.0,
+                    "strain_xx": 0.5 * principal, "strain_yy": -0.5 * principal,
+                    "strain_zz": 0.0, "strain_xy": 2.0 * principal * np.sqrt(0.75),
+                    "plastic_strain": 0.0, "tensile_strength_1_MPa": strength,
+                    "tensile_strength_2_MPa": 1.5, "tensile_strength_3_MPa": 1.5,
+                }
+            )
+        )  # fmt: skip
+    return pd.concat(tables).sort_values("time_s", kind="stable", ignore_index=True)
+
+
+@pytest.fixture
+def make_hole(tmp_path):
+    """make_hole(name, radius_mm, kinks, cracks, wake, largest, whole) -> folder of a hole run.
+
+    kinks : zone -> axial stress [MPa] at which its gauges bend; principal strain equals that
+    cracks : rows (axial stress [MPa], x, y, mode) of single edges, positions in radii
+    wake : probes that bend without softening
+    largest : axial stress [MPa] that the block bears before it falls to nothing
+    whole : straight gauges, no cracks: the elastic run
+    """
+
+    def made(name, radius_mm=25.0, kinks=None, cracks=(), wake=(), largest=24.0, whole=False):
+        folder = tmp_path / "out" / "runs" / name
+        folder.mkdir(parents=True)
+        times = np.linspace(0.0, 1.1, 441)
+        stress = np.where(times <= 1.0, largest * times, largest * (11.0 - 10.0 * times))
+        pd.DataFrame(
+            {
+                "time_s": times, "step": np.arange(len(times)), "axial_strain": 1e-3 * times,
+                "axial_stress_MPa": stress,
+            }
+        ).to_parquet(folder / "history.parquet")  # fmt: skip
+        rising = np.maximum.accumulate(stress)
+        hole_probes(times, rising, HOLE_KINK | (kinks or {}), wake, whole).to_parquet(
+            folder / "probes.parquet"
+        )
+        rows = [
+            {
+                "time_s": moment / largest, "step": i, "crack": i + 1,
+                "x1_mm": radius_mm * x, "y1_mm": radius_mm * (y - 0.05), "x2_mm": radius_mm * x,
+                "y2_mm": radius_mm * (y + 0.05), "length_mm": 0.1 * radius_mm, "mode": mode,
+            }
+            for i, (moment, x, y, mode) in enumerate(cracks)
+        ]  # fmt: skip
+        columns = ["time_s", "x1_mm", "y1_mm", "x2_mm", "y2_mm", "mode"]
+        if not whole:
+            pd.DataFrame(rows, columns=None if rows else columns).to_parquet(
+                folder / "cracks.parquet"
+            )
+        material = yaml.safe_load(LIMESTONE.read_text())
+        if whole:
+            keep = ("title", "young_modulus_GPa", "poisson_ratio", "density_kg_m3")
+            material = {key: material[key] for key in keep} | {"elastic": True}
+        case = {
+            "title": name, "material": material, "loading": {"kind": "velocity"},
+            "scene": {"kind": "hole", "hole_radius_mm": radius_mm},
+        }  # fmt: skip
+        (folder / "case.yaml").write_text(yaml.safe_dump(case))
+        (folder / "summary.json").write_text(json.dumps({"case": name}))
+        mesh = block_mesh(platen=False)
+        mesh.save(folder / "mesh.npz")
+        return folder
+
+    return made
+
+
 @pytest.fixture
 def make_punch_run(make_run):
     """make_punch_run(name, gf=60, compression=True, cracks=None) -> folder (`punch_runs`)."""

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from lithofrac.analysis.discrete import bands, cracks
+from lithofrac.analysis.hole_tables import hole_initiation
 from lithofrac.analysis.punch import punch
 from lithofrac.analysis.runs import Run
 from lithofrac.analysis.tables import kirsch, strength
@@ -53,6 +54,9 @@ TABLES = {
         bands,
         ("band_angle_deg", "cracks_near_axis_percent", "median_crack_angle_deg"),
         nature="picked",
+    ),
+    "hole_initiation": Table(
+        hole_initiation, ("initiation_MPa",), ("hole",), ("zone", "criterion")
     ),
     "kirsch": Table(kirsch, ("computed", "difference_percent"), ("hole_quarter",), ("point",)),
 }

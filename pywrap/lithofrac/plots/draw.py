@@ -6,7 +6,15 @@ from pathlib import Path
 import pandas as pd
 from matplotlib.figure import Figure
 
-from lithofrac.analysis import discrete, options, results, tables
+from lithofrac.analysis import (
+    discrete,
+    hole_checks,
+    hole_tables,
+    options,
+    results,
+    size_law,
+    tables,
+)
 from lithofrac.analysis.claims import claims
 from lithofrac.analysis.punch import punch as punch_table
 from lithofrac.analysis.variants import variants as variants_table
@@ -17,12 +25,14 @@ from lithofrac.plots import (
     evolution,
     fractures,
     gallery,
+    hole,
     measured,
     mesh,
     punch,
     punch_patterns,
     sandstone,
     single_element,
+    size_effect,
     stiffness,
     style,
     variants,
@@ -42,6 +52,9 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "fracture_evolution": evolution.figure,
     "events": events.figure,
     "punch": punch.figure,
+    "hole_gauges": hole.gauges,
+    "hole_patterns": hole.patterns,
+    "size_effect": size_effect.figure,
     "punch_patterns": punch_patterns.figure,
     "variants": variants.figure,
 }
@@ -58,6 +71,10 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "cracks": discrete.cracks,
     "bands": discrete.bands,
     "punch": punch_table,
+    "hole_initiation": hole_tables.hole_initiation,
+    "size_effect": hole_tables.size_effect,
+    "hole_fits": size_law.hole_fits,
+    "hole_checks": hole_checks.hole_checks,
     "variants": variants_table,
     "results": results.verdicts,
     "claims": claims,

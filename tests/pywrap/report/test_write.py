@@ -31,6 +31,7 @@ def out(make_run, make_bench, data_folder, tmp_path):
         "single_element": bench,
         "tautona": [QUARTZITE],
         "kirsch": [],
+        "hole_checks": [ROOT / "reports" / "bands.csv", *runs],
         "variants": [ROOT / "configs" / "suite.yaml", *runs],
     }
     (tmp_path / "out" / "tables").mkdir(parents=True)
