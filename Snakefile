@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from lithofrac.config import load_suite
+from lithofrac.report import category_of, load_sheets
 
 SUITE = config.get("suite", "configs/suite.yaml")
 OUT = config.get("out", "out")
@@ -70,11 +71,57 @@ COMPARED = {
     "hole_patterns": [run for run in HOLES if run.split("/")[-2] in DRAWN],
     "size_effect": INITIATION if HOLES else [],
 }
+ALWAYS = ["stress_strain.svg", "strength.svg", "measured.svg", "sandstone.png"]
 FIGURES = expand(
     f"{OUT}/figures/{{kind}}_{{case}}.svg",
     kind=["fractures", "events", "energy"],
-    case=DISCRETE,
+    case=[
+        name for name in DISCRETE if "@seed" not in name
+    ],  # other meshes tell the spread only
 ) + [f"{OUT}/figures/{kind}.svg" for kind, runs in COMPARED.items() if runs]
+
+# The best figures, committed by `pages`: name -> plot and its runs, where the suite has them.
+GALLERY = {
+    "punch": ("punch", COMPARED["punch"]),
+    "fractures_punch_discrete": (
+        "fractures",
+        [run for run in RUNS if "/punch_discrete/" in run],
+    ),
+    "fractures_punch_tension_only": (
+        "fractures",
+        [run for run in RUNS if "/punch_tens" in run],
+    ),
+    "sandstone": (
+        "gallery",
+        [run for run in SANDSTONE if "/sandstone_plane_strain_p" in run],
+    ),
+    "fracture_series": ("fracture_series", COMPARED["fracture_series"]),
+    "strength": ("strength", [*SANDSTONE, *STIFF]),
+    **{
+        name: (name, COMPARED[name])
+        for name in ("size_effect", "hole_patterns", "hole_gauges")
+    },
+}
+GALLERY = {name: (kind, runs) for name, (kind, runs) in GALLERY.items() if runs}
+
+# A page and a category for each scene; its sheet says which figures it shows.
+SHEETS = load_sheets(Path("reports/sheets"))
+CAPTIONS = sorted(map(str, Path("reports/captions").glob("*.rst")))
+MADE = FIGURES + expand(f"{OUT}/figures/single_element_{{rock}}.svg", rock=ROCKS)
+MADE += expand(f"{OUT}/figures/mesh_{{case}}.svg", case=SCENES)
+MADE += [f"{OUT}/figures/{name}" for name in ALWAYS]
+
+
+def scene(figure):
+    """Category of a figure, whose name may hold wildcards of its rule."""
+    return lambda wildcards: category_of(figure.format(**wildcards), SHEETS)
+
+
+def on_page(wildcards):
+    """Figures of a page."""
+    sheet = next(sheet for sheet in SHEETS if sheet.name == wildcards.sheet)
+    shown = sheet.figures([Path(figure).stem for figure in MADE])
+    return [figure for figure in MADE if Path(figure).stem in shown]
 
 
 report: "reports/captions/suite.rst"
@@ -83,13 +130,15 @@ report: "reports/captions/suite.rst"
 wildcard_constraints:
     case="|".join(CASES),
     compared="|".join(COMPARED),
+    picture="|".join(GALLERY),
 
 
 rule all:
+    # Runs by name: one that failed leaves nothing, and figures of an older run would hide that.
     input:
+        RUNS,
         f"{OUT}/report.md",
-        expand(f"{OUT}/figures/single_element_{{rock}}.svg", rock=ROCKS),
-        expand(f"{OUT}/figures/mesh_{{case}}.svg", case=SCENES),
+        expand(f"{OUT}/pages/{{sheet}}.html", sheet=[sheet.name for sheet in SHEETS]),
 
 
 rule simulate:
@@ -136,7 +185,7 @@ rule plot_bench:
         report(
             f"{OUT}/figures/single_element_{{rock}}.svg",
             caption="reports/captions/single_element.rst",
-            category="1 Material point",
+            category=scene("single_element_{rock}"),
         ),
     log:
         f"{OUT}/log/plot_bench_{{rock}}.txt",
@@ -154,12 +203,12 @@ rule plot_run:
         mesh=report(
             f"{OUT}/figures/mesh_{{case}}.svg",
             caption="reports/captions/mesh.rst",
-            category="4 Scenes",
+            category=scene("mesh_{case}"),
         ),
         energy=report(
             f"{OUT}/figures/energy_{{case}}.svg",
             caption="reports/captions/energy.rst",
-            category="4 Scenes",
+            category=scene("energy_{case}"),
         ),
     log:
         f"{OUT}/log/plot_run_{{case}}.txt",
@@ -181,18 +230,22 @@ rule plot_suite:
         curves=report(
             f"{OUT}/figures/stress_strain.svg",
             caption="reports/captions/stress_strain.rst",
-            category="2 Sandstone",
+            category=scene("stress_strain"),
         ),
         strength=report(
             f"{OUT}/figures/strength.svg",
             caption="reports/captions/strength.rst",
-            category="2 Sandstone",
+            category=scene("strength"),
         ),
-        gallery=f"{OUT}/figures/sandstone.png",
+        gallery=report(
+            f"{OUT}/figures/sandstone.png",
+            caption="reports/captions/sandstone.rst",
+            category=scene("sandstone"),
+        ),
         measured=report(
             f"{OUT}/figures/measured.svg",
             caption="reports/captions/measured.rst",
-            category="3 Measured strengths",
+            category=scene("measured"),
         ),
     log:
         f"{OUT}/log/plot_suite.txt",
@@ -213,12 +266,12 @@ rule plot_cracks:
         fractures=report(
             f"{OUT}/figures/fractures_{{case}}.svg",
             caption="reports/captions/fractures.rst",
-            category="5 Cracks",
+            category=scene("fractures_{case}"),
         ),
         events=report(
             f"{OUT}/figures/events_{{case}}.svg",
             caption="reports/captions/events.rst",
-            category="5 Cracks",
+            category=scene("events_{case}"),
         ),
     log:
         f"{OUT}/log/plot_cracks_{{case}}.txt",
@@ -237,7 +290,7 @@ rule plot_compared:
         report(
             f"{OUT}/figures/{{compared}}.svg",
             caption="reports/captions/compared.rst",
-            category="5 Cracks",
+            category=scene("{compared}"),
         ),
     log:
         f"{OUT}/log/plot_{{compared}}.txt",
@@ -262,25 +315,41 @@ rule table:
         "lithofrac plot {wildcards.table} {input.sources} --out {output} > {log} 2>&1"
 
 
+rule picture:
+    input:
+        DRAWING,
+        runs=lambda wildcards: GALLERY[wildcards.picture][1],
+    output:
+        f"{OUT}/gallery/{{picture}}.png",
+    log:
+        f"{OUT}/log/picture_{{picture}}.txt",
+    params:
+        kind=lambda wildcards: GALLERY[wildcards.picture][0],
+    message:
+        "Draw {wildcards.picture} for the gallery"
+    shell:
+        "lithofrac plot {params.kind} {input.runs} --out {output} > {log} 2>&1"
+
+
 rule pages:
-    # Asked for by name only: refreshes what is committed, README.md, the sheets and its picture.
+    # Asked for by name only: refreshes what is committed, README.md, the sheets and the gallery.
     input:
         f"{OUT}/report.md",
-        f"{OUT}/figures/sandstone.png",
+        pictures=expand(f"{OUT}/gallery/{{picture}}.png", picture=GALLERY),
     params:
         pages=["README.md", *sorted(map(str, Path("reports/sheets").glob("*.md")))],
     message:
-        "Fill README.md and the sheets"
+        "Fill README.md, the sheets and the gallery"
     shell:
         "for page in {params.pages}; do lithofrac report {OUT} --out $page || exit 1; done &&"
-        " mkdir -p reports/gallery && cp {OUT}/figures/sandstone.png reports/gallery/"
+        " lithofrac gallery {OUT} {input.pictures} --out reports/gallery"
 
 
 rule summary:
     input:
         expand(f"{OUT}/tables/{{table}}.csv", table=TABLES),
-        rules.plot_suite.output,
-        FIGURES,
+        MADE,
+        CAPTIONS,
         Path("reports/sheets").glob("*.md"),
     output:
         markdown=f"{OUT}/report.md",
@@ -296,3 +365,28 @@ rule summary:
     shell:
         "(lithofrac report {OUT} --out {output.markdown} &&"
         " lithofrac report {OUT} --out {output.page}) > {log} 2>&1"
+
+
+rule page:
+    input:
+        expand(f"{OUT}/tables/{{table}}.csv", table=TABLES),
+        CAPTIONS,
+        "reports/sheets/{sheet}.md",
+        figures=on_page,
+    output:
+        report(
+            f"{OUT}/pages/{{sheet}}.html",
+            caption="reports/captions/page.rst",
+            category=lambda wildcards: next(
+                sheet.category for sheet in SHEETS if sheet.name == wildcards.sheet
+            ),
+        ),
+    log:
+        f"{OUT}/log/page_{{sheet}}.txt",
+    message:
+        "Write the page of {wildcards.sheet}"
+    shell:
+        "lithofrac report {OUT} --out {output} > {log} 2>&1"
+
+
+include: "pywrap/rules/regression.smk"

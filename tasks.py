@@ -7,6 +7,8 @@ python3 tasks.py test [--all]                    linters, tests on three builds,
                                                  --all adds the tests marked slow
 python3 tasks.py setup                           only install what is missing and build
 python3 tasks.py benchmark                       speed of the core, kept in out/benchmark.json
+python3 tasks.py portable                        a second build, beside the installed one: its bits
+                                                 are the same on every x86-64, for references
 
 Each task sets up what it needs first; once that is done, a second call goes straight to work.
 One file on purpose: it has to run before anything of this project is installed.
@@ -40,6 +42,7 @@ BUILDS = {
     "checked": "-Dbuildtype=debug -Doptimization=1 -Dchecked=true -Db_coverage=true",
     "sanitize": "-Dbuildtype=debug -Doptimization=1 -Db_sanitize=address,undefined"
     " -Db_lundef=false",
+    "portable": "-Dnative=false",
 }
 
 # What gmsh's library is linked to, and the Debian package that has it.
@@ -321,6 +324,13 @@ def reproduce(extra):
     say("read out/report.html or out/report.md")
 
 
+def portable():
+    """The build that makes references; the one that is installed stays as it is."""
+    if not VENV.exists():
+        make_environment()
+    sys.exit(build("portable"))
+
+
 def benchmark(extra):
     """Speed of the core, one thread unless OMP_NUM_THREADS says otherwise."""
     setup()
@@ -341,7 +351,7 @@ def lint():
     linters = {
         "ruff check": ["ruff", "check", "--quiet"],
         "ruff format": ["ruff", "format", "--check", "--quiet"],
-        "snakefmt": ["snakefmt", "--check", "Snakefile"],
+        "snakefmt": ["snakefmt", "--check", "Snakefile", "pywrap/rules"],
         "fortitude": ["fortitude", "check", "--output-format=concise", "fortran", "pywrap"],
     }
     failed = []
@@ -433,7 +443,7 @@ def test(everything):
         log = LOG / f"{kind}.txt"
         if (codes[kind] or kind == "release") and log.exists():
             say(f"---- tests, {kind} build ----\n{log.read_text()[-20000:]}")
-    counts = {kind: counted(kind) for kind in BUILDS}
+    counts = {kind: counted(kind) for kind in order}
     for kind, (passed, wrong, skipped) in counts.items():
         say(f"tests of the {kind} build: {passed} passed, {wrong} failed, {skipped} skipped")
         if codes[kind] and not wrong:
@@ -455,6 +465,8 @@ def main(arguments):
         reproduce(extra)
     elif task == "test" and extra in ([], ["--all"]):
         test(everything=bool(extra))
+    elif task == "portable" and not extra:
+        portable()
     elif task == "benchmark":
         benchmark(extra)
     elif task in ("help", "-h", "--help"):

@@ -182,6 +182,18 @@ def test_dry_run_writes_no_report(tasks, calls, monkeypatch):
 
 
 @pytest.mark.no_core
+def test_portable_build_stands_beside_the_installed_one(tasks, calls):
+    tasks.VENV.mkdir()
+    with pytest.raises(SystemExit) as left:
+        tasks.main(["portable"])
+    assert left.value.code == 0
+    [command] = calls
+    assert "-Csetup-args=-Dnative=false" in command
+    assert command[command.index("--target") + 1] == str(tasks.BUILD / "portable-site")
+    assert "--force-reinstall" not in command
+
+
+@pytest.mark.no_core
 def test_run_of_tests_without_counts_has_failed(tasks):
     assert tasks.counted("release") == (0, 1, 0)
 
@@ -198,5 +210,5 @@ def test_unknown_task_or_option_is_refused_before_anything_is_done(arguments):
 def test_help_names_every_task():
     done = run_front("help")
     assert done.returncode == 0
-    for task in ("reproduce", "test", "setup", "benchmark"):
+    for task in ("reproduce", "test", "setup", "benchmark", "portable"):
         assert f"tasks.py {task}" in done.stdout

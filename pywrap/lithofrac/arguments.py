@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 
 import lithofrac
+from lithofrac._build import NATIVE
 
 
 def parser() -> argparse.ArgumentParser:
@@ -15,14 +16,16 @@ def parser() -> argparse.ArgumentParser:
         prog="lithofrac",
         description="Rock fracture benchmarks: continuum with a crack band, explicit in time.",
         epilog="example: lithofrac run sandstone_triaxial_p10 --out out/p10\n"
-        "exit codes: 0 good, 2 bad input, 3 numerical failure, 130 interrupted",
+        "exit codes: 0 good, 2 bad input, 3 numerical failure, 4 numbers moved,\n"
+        "            130 interrupted",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    found.add_argument("--version", action="version", version=f"lithofrac {lithofrac.__version__}")
+    version = f"lithofrac {lithofrac.__version__}, native: {str(NATIVE).lower()}"
+    found.add_argument("--version", action="version", version=version)
     commands = found.add_subparsers(
         title="commands", metavar="COMMAND", dest="command", required=True
     )
-    for add in (_check, _mesh, _run, _plot, _report, _point):
+    for add in (_check, _mesh, _run, _plot, _report, _gallery, _point, _compare, _references):
         add(commands)
     return found
 
@@ -37,6 +40,8 @@ def _command(commands, name: str, summary: str, example: str) -> argparse.Argume
 
 
 MOST_THREADS = max(64, 4 * (os.cpu_count() or 1))  # far more than help, far fewer than crash
+REFERENCES = Path("tests/references")
+GALLERY = Path("reports/gallery")
 CASE = "case file (.yaml) or name in the suite; NAME@seed2 is another mesh"
 
 
@@ -93,6 +98,13 @@ def _report(commands) -> None:
     one.add_argument("--out", type=_path, required=True, metavar="FILE", help="Markdown to write")
 
 
+def _gallery(commands) -> None:
+    one = _command(commands, "gallery", "replace the committed pictures", "out out/gallery/*.png")
+    one.add_argument("folder", type=Path, metavar="DIR", help="folder of the results folders")
+    one.add_argument("picture", type=Path, nargs="+", metavar="PNG", help="picture to show")
+    one.add_argument("--out", type=_path, default=GALLERY, metavar="DIR", help=f"default {GALLERY}")
+
+
 def _point(commands) -> None:
     one = _command(
         commands,
@@ -122,6 +134,36 @@ def _point(commands) -> None:
     )
     one.add_argument(
         "--out", type=_path, required=True, metavar="FILE", help="curve, .parquet, or a folder"
+    )
+
+
+def _compare(commands) -> None:
+    one = _command(
+        commands, "compare", "say what moved against the references", "out/regression/installed/*"
+    )
+    _finished_runs(one)
+
+
+def _references(commands) -> None:
+    one = _command(
+        commands,
+        "references",
+        "replace the references",
+        'out/regression/portable/* --twin out/regression/installed/* --why "Finer ramps"',
+    )
+    _finished_runs(one)
+    one.add_argument(
+        "--twin", type=Path, nargs="+", required=True, metavar="RUN", help="runs of a native build"
+    )
+    one.add_argument("--why", required=True, metavar="TEXT", help="reason, kept with the numbers")
+
+
+def _finished_runs(one: argparse.ArgumentParser) -> None:
+    one.add_argument(
+        "run", nargs="+", type=Path, metavar="RUN", help="results folder or file in it"
+    )
+    one.add_argument(
+        "--references", type=_path, default=REFERENCES, metavar="DIR", help=f"default {REFERENCES}"
     )
 
 

@@ -1,7 +1,7 @@
-"""The command line: `lithofrac check | mesh | run | plot | report | point`.
+"""The command line: `lithofrac check | mesh | run | plot | report | ...`.
 
-Exit codes: 0 good, 2 bad input, 3 numerical failure, 130 interrupted. Heavy modules are imported
-by the command that needs them.
+Exit codes: 0 good, 2 bad input, 3 numerical failure, 4 numbers moved, 130 interrupted. Heavy
+modules are imported by the command that needs them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from lithofrac.config import Case
     from lithofrac.problem import Mesh, Problem
 
-GOOD, BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 0, 2, 3, 130
+GOOD, BAD_INPUT, NUMERICAL_FAILURE, MOVED, INTERRUPTED = 0, 2, 3, 4, 130
 MOST_STEPS = 1_000_000_000
 OWN_FILES = (
     "summary.json",
@@ -153,6 +153,14 @@ def report(options: Namespace) -> int:
     return GOOD
 
 
+def gallery(options: Namespace) -> int:
+    """Replace the committed pictures, and say what made them."""
+    from lithofrac.report import write_gallery
+
+    write_gallery(options.folder, options.picture, options.out, Path("reports/captions"))
+    return GOOD
+
+
 def point(options: Namespace) -> int:
     """Drive one material point and write its curve, or a folder of curves."""
     from lithofrac import point as bench
@@ -189,14 +197,58 @@ def point(options: Namespace) -> int:
     return GOOD
 
 
+def compare(options: Namespace) -> int:
+    """Hold runs against the references; what moved is printed."""
+    from lithofrac.analysis.references import read
+    from lithofrac.analysis.regression import compare, sentences
+    from lithofrac.analysis.runs import find_runs
+
+    references = read(options.references)
+    found = compare(find_runs(_present(options.run)), references, Path("data"))
+    for line in sentences(found, references):
+        print(line)
+    return MOVED if found.drifted else GOOD
+
+
+def references(options: Namespace) -> int:
+    """Replace the references by the numbers of runs."""
+    from lithofrac.analysis.references import make, write
+    from lithofrac.analysis.runs import find_runs
+
+    runs, twins = find_runs(_present(options.run)), find_runs(_present(options.twin))
+    numbers, meshes = make(runs, twins, Path("data"))
+    write(options.references, numbers, meshes, options.why, runs)
+    print(f"{options.references}: {len(numbers)} numbers of {len(meshes)} cases")
+    return GOOD
+
+
 COMMANDS = {
     "check": check,
     "mesh": mesh,
     "run": run,
     "plot": plot,
     "report": report,
+    "gallery": gallery,
     "point": point,
+    "compare": compare,
+    "references": references,
 }
+
+
+def _present(paths: list[Path]) -> list[Path]:
+    """Paths that are there.
+
+    Raises
+    ------
+    DataError
+        At the first that is not.
+    """
+    from lithofrac.data import DataError
+
+    for path in paths:
+        if not path.exists():
+            raise DataError(f"{path}: no such file or folder, expected a results folder")
+    return paths
 
 
 def _case(name: str, options: Namespace) -> Case:

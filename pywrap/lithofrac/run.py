@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import math
+import os
+import platform
 import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
 
 import lithofrac
+from lithofrac._build import NATIVE
 from lithofrac.analysis.strength import first_peak
 from lithofrac.core import ContactStatistics, Run
 from lithofrac.errors import CoreError
@@ -233,6 +237,9 @@ class _Session:
             "message": message,
             **self.meta,
             "version": lithofrac.__version__,
+            "native": NATIVE,
+            "machine": _machine(),
+            "finished": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
             "elements": elements,
             "nodes": len(self.problem.mesh.nodes),
             "steps": run.step,
@@ -284,6 +291,17 @@ def _signals_later() -> Iterator[list[int]]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def _machine() -> str:
+    """System, number of cores and, where the system tells it, the processor."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        lines = []
+    models = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    known = [platform.system(), platform.machine(), f"{os.cpu_count()} cores", *models[:1]]
+    return ", ".join(part for part in known if part)
 
 
 def _peak(history, energy) -> dict:

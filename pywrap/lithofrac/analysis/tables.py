@@ -35,6 +35,9 @@ SUMMARY = (
     "kinetic_ratio_at_peak",
     "version",
     "commit",
+    "native",
+    "machine",
+    "finished",
 )
 
 

@@ -15,6 +15,7 @@ from lithofrac.scenes import make_problem
 
 BODIES = ("#f2ead9", "#dfe6ec", "#e8e2ef", "#dfebdf", "#efdfdf")
 ARROWS = 12  # symbols along one boundary at most
+RASTER = 1000  # triangles; more of them are lighter as pixels than as lines
 
 
 def figure(inputs: list[Path], data: Path) -> Figure:
@@ -57,7 +58,7 @@ def draw_mesh(axes: Axes, mesh: Mesh) -> None:
         axes.tripcolor(
             nodes[:, 0], nodes[:, 1], np.full(len(chosen), 0.0), triangles=chosen,
             cmap=style.flat(BODIES[index % len(BODIES)]), edgecolors=style.GREY, linewidth=0.25,
-            rasterized=len(chosen) > 5000,
+            rasterized=len(chosen) > RASTER,
         )  # fmt: skip
         label = f"{name}, triangles: {len(chosen)}"
         axes.plot([], [], "s", color=BODIES[index % len(BODIES)], mec=style.GREY, label=label)

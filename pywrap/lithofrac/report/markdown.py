@@ -21,6 +21,9 @@ body {{ font: 15px/1.5 sans-serif; max-width: 60em; margin: 2em auto; padding: 0
 table {{ border-collapse: collapse; margin: 1em 0; font-size: 13px; }}
 th, td {{ border: 1px solid #ccc; padding: 0.25em 0.6em; text-align: left; }}
 th {{ background: #f2f2f2; }}
+figure {{ margin: 1.5em 0; border-top: 1px solid #ccc; }}
+figure img {{ max-width: 100%; height: auto; }}
+figcaption {{ font-size: 13px; color: #444; }}
 </style></head><body>
 {body}</body></html>
 """

@@ -1,17 +1,19 @@
 """What `lithofrac report OUT_DIR --out FILE` does."""
 
-import datetime
+import base64
 import os
-import platform
 from pathlib import Path
 
 import pandas as pd
 
 from lithofrac.data import DataError
 from lithofrac.report.blocks import fill, has_blocks
+from lithofrac.report.captions import caption, is_of_a_run
 from lithofrac.report.markdown import to_html, to_markdown
+from lithofrac.report.sheets import place
 
 SHEETS = Path("reports", "sheets")
+ORIGIN = ("version", "commit", "native", "machine", "finished")  # of run_time
 GALLERY = "gallery"  # beside the sheets: the figures that are committed
 DRAWN = "drawn"  # column that names a figure
 TITLES = {
@@ -22,47 +24,33 @@ TITLES = {
     "errors": "Distance from digitised curves",
     "run_time": "Run time and energy error",
 }  # tables of the whole report, in order; the others stand in the sheets
-FIGURES = {
-    "stress_strain.svg": "Axial stress against axial strain of sandstone, compare Fig. 9",
-    "strength.svg": "Strength of sandstone against confinement, compare Fig. 10",
-    "stiffness_sweep.svg": "Sandstone in plane strain at several lateral stiffnesses",
-    "measured.svg": "Table 1 beside TauTona quartzite, a fitted line beside Zigong sandstone",
-    "sandstone.png": "Where the specimens failed: plastic strain at the end",
-    "punch.svg": "Stress under the strip punch against axial strain, compare Fig. 6",
-    "punch_patterns.svg": "What forms beneath the strip punch, compare Fig. 7",
-    "fracture_evolution.svg": "Cracks in sandstone in plane strain as they grow, compare Fig. 11a",
-    "fracture_series.svg": "Cracks in sandstone blocks under soft pressure, compare Fig. 11",
-    "variants.svg": "What the open choices change: stress-strain curves beside their twins",
-    "hole_patterns.svg": "Cracks about a hole right after initiation, compare Fig. 14",
-    "hole_gauges.svg": "Axial stress against strain of gauges about a hole, compare Fig. 15",
-    "size_effect.svg": "Initiation stress against hole radius, compare Fig. 16",
-}
-CRACKS = {
-    "fractures": "cracks on the deformed mesh, by mode and by time",
-    "events": "stress, and when each crack opened",
-    "energy": "where the energy went",
-}  # figures of each case with discrete cracks, in order
+PICTURE = (
+    '<figure id="{name}"><img alt="{name}" src="{source}">\n'
+    "<figcaption>\n{caption}\n</figcaption></figure>\n"
+)  # no blank line: Markdown would end the HTML there
+TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
 
 def write_report(out_dir: Path, file: Path, sheets: Path = SHEETS) -> None:
     """Write Markdown, or a web page when `file` ends in `.html`.
 
     A file that is there and has marked blocks (README.md, a sheet) gets its tables refreshed in
-    place and keeps the rest. Otherwise a file named like a sheet becomes that sheet, filled, and
-    any other name becomes the whole report: results, all sheets, costs.
+    place and keeps the rest. Otherwise a file named like a sheet becomes that sheet, filled, with
+    its figures; a web page holds them in itself. Any other name becomes the whole report: results,
+    all sheets, costs; as a web page it is part of Snakemake's, which has the figures.
 
     Parameters
     ----------
     out_dir : folder of the pipeline; tables are read from `tables/` in it
     file : what to write; written whole or not at all
-    sheets : folder of the V&V sheets
+    sheets : folder of the V&V sheets; the captions of the figures lie beside it
 
     Raises
     ------
     DataError
         When there are no tables, or a block asks for one that is not there.
     """
-    tables = read_tables(out_dir)
+    tables, captions = read_tables(out_dir), sheets.parent / "captions"
     old = file.read_text(encoding="utf-8") if file.is_file() else ""
     sheet = sheets / f"{file.stem}.md"
     committed = linked(tables, sheets.parent / GALLERY, file.parent)
@@ -70,9 +58,14 @@ def write_report(out_dir: Path, file: Path, sheets: Path = SHEETS) -> None:
         text = fill(old, committed, str(file))
     elif sheet.is_file():
         text = fill(sheet.read_text(encoding="utf-8"), committed, str(sheet))
+        here = None if file.suffix == ".html" else file.parent
+        text = with_figures(text, tables, out_dir, here, captions)
     else:
-        pictures = out_dir / "figures" if file.suffix == ".md" else None
-        text = whole_report(tables, sheets, pictures, file.parent)
+        if file.suffix == ".md":
+            tables = linked(tables, out_dir / "figures", file.parent)
+        text = whole_report(tables, sheets)
+        if file.suffix == ".md":
+            text = with_figures(text, tables, out_dir, file.parent, captions)
     file.parent.mkdir(parents=True, exist_ok=True)
     part = file.with_name(f".{file.name}.part")
     part.write_text(to_html(text) if file.suffix == ".html" else text, encoding="utf-8")
@@ -93,39 +86,51 @@ def read_tables(out_dir: Path) -> dict[str, pd.DataFrame]:
     return tables
 
 
-def whole_report(
-    tables: dict[str, pd.DataFrame], sheets: Path, pictures: Path | None, here: Path
-) -> str:
-    """Provenance and results first, then figures, every sheet, and costs.
-
-    Figures are linked from the folder `pictures` relative to `here`; a page that is embedded
-    elsewhere has none.
-    """
-    if pictures is not None:
-        tables = linked(tables, pictures, here)
+def whole_report(tables: dict[str, pd.DataFrame], sheets: Path) -> str:
+    """Provenance and results first, then every sheet, and costs."""
     parts = ["# lithofrac: report of the suite\n", provenance(tables)]
-    shown = [name for name in TITLES if name in tables]
-    for name in shown:
+    for name in [name for name in TITLES if name in tables]:
         if name == "run_time":
             for path in sorted(sheets.glob("*.md")):
                 text = fill(path.read_text(encoding="utf-8"), tables, str(path))
                 parts.append(text.replace("\n## ", "\n### ").replace("# ", "## ", 1))
-        parts.append(f"## {TITLES[name]}\n\n{to_markdown(tables[name])}")
-        if name == "results" and pictures is not None:
-            parts += [
-                f"![{alt}]({os.path.relpath(pictures / name, here)})\n\n*{alt}*\n"
-                for name, alt in {**FIGURES, **_crack_figures(tables)}.items()
-                if (pictures / name).is_file()
-            ]
+        shown = tables[name].drop(columns=list(ORIGIN), errors="ignore")
+        parts.append(f"## {TITLES[name]}\n\n{to_markdown(shown)}")
     return "\n".join(parts)
+
+
+def with_figures(
+    text: str, tables: dict[str, pd.DataFrame], out_dir: Path, here: Path | None, captions: Path
+) -> str:
+    """A text with the figures that its comments name, each with its caption.
+
+    Figures are linked relative to the folder `here`, or embedded where there is none. What an older
+    suite has left in the folder is not shown.
+    """
+    runs = tables.get("run_time", pd.DataFrame())
+    cases = set(runs["case"]) if "case" in runs else set()
+    files = {path.stem: path for path in (out_dir / "figures").glob("*.*") if path.suffix in TYPES}
+
+    def show(name: str) -> str:
+        source = os.path.relpath(files[name], here) if here else embedded(files[name])
+        return PICTURE.format(name=name, source=source, caption=caption(name, captions, out_dir))
+
+    return place(text, [name for name in files if is_of_a_run(name, captions, cases)], show)
+
+
+def embedded(path: Path) -> str:
+    """A picture as an address that holds the picture itself."""
+    data = base64.b64encode(path.read_bytes()).decode("ascii")
+    return f"data:{TYPES[path.suffix]};base64,{data}"
 
 
 def linked(tables: dict[str, pd.DataFrame], pictures: Path, here: Path) -> dict[str, pd.DataFrame]:
     """The tables with links, relative to `here`, for the figures they name that are there."""
 
     def link(name: str) -> str:
-        picture = pictures / str(name)
-        return f"[{name}]({os.path.relpath(picture, here)})" if picture.is_file() else name
+        drawn = [pictures / str(name), (pictures / str(name)).with_suffix(".png")]
+        there = next((path for path in drawn if path.is_file()), None)
+        return f"[{name}]({os.path.relpath(there, here)})" if there else name
 
     return {
         key: table.assign(**{DRAWN: table[DRAWN].map(link)}) if DRAWN in table else table
@@ -133,23 +138,17 @@ def linked(tables: dict[str, pd.DataFrame], pictures: Path, here: Path) -> dict[
     }
 
 
-def _crack_figures(tables: dict[str, pd.DataFrame]) -> dict[str, str]:
-    """File -> words, for every case with discrete cracks."""
-    cases = tables["cracks"]["case"] if "cracks" in tables else ()
-    return {
-        f"{kind}_{case}.svg": f"{case}: {alt}" for case in cases for kind, alt in CRACKS.items()
-    }
-
-
 def provenance(tables: dict[str, pd.DataFrame]) -> str:
-    """What made the numbers: version, commit and machine."""
+    """What made the numbers: version, commit and machine of the runs, and when they ended."""
     runs = tables.get("run_time", pd.DataFrame())
-    known = {
-        name: ", ".join(runs[name].dropna().astype(str).unique()) if name in runs else ""
-        for name in ("version", "commit")
-    }
+    known = {name: [] for name in ORIGIN}
+    for name in known:
+        if name in runs:
+            known[name] = sorted(runs[name].dropna().astype(str).unique())
+    said = {name: ", ".join(values) or "unknown" for name, values in known.items()}
+    ends = known["finished"]
+    when = f"{ends[0]} to {ends[-1]}" if ends else "at an unknown time"
     return (
-        f"Version {known['version'] or 'unknown'}, commit {known['commit'] or 'unknown'}; written"
-        f" {datetime.date.today()} on {platform.system()} {platform.machine()},"
-        f" {os.cpu_count()} cores.\n"
+        f"{len(runs)} runs of version {said['version']}, commit {said['commit']}, on"
+        f" {said['machine']} (native build: {said['native'].lower()}), {when}.\n"
     )

@@ -6,6 +6,7 @@ import sys
 import pytest
 
 import lithofrac
+from lithofrac._build import NATIVE
 from lithofrac.cli import COMMANDS, main
 
 pytestmark = pytest.mark.no_core
@@ -32,9 +33,11 @@ def test_each_command_shows_an_example(command, capsys):
     assert f"example: lithofrac {command}" in capsys.readouterr().out
 
 
-def test_version():
+def test_version_says_how_the_core_was_built():
     done = words("--version")
-    assert (done.returncode, done.stdout) == (0, f"lithofrac {lithofrac.__version__}\n")
+    native = str(NATIVE).lower()
+    said = f"lithofrac {lithofrac.__version__}, native: {native}\n"
+    assert (done.returncode, done.stdout) == (0, said)
 
 
 @pytest.mark.parametrize("arguments", [[], ["rum"], ["run"], ["run", "kirsch", "--threads", "0"]])

@@ -12,6 +12,9 @@ from pathlib import Path
 
 import pytest
 
+from lithofrac.report import category_of, load_sheets
+from lithofrac.report.captions import caption
+
 pytestmark = pytest.mark.no_core
 ROOT = Path(__file__).parents[3]
 PARTS = ("Snakefile", "configs", "data", "reports", "fortran", "pywrap")
@@ -26,11 +29,14 @@ cases:
 """
 STAND_IN = """\
 #!/bin/sh
+here=$(dirname "$0")
+echo "$@" >> "$here/said"
+if [ -e "$here/fails" ] && echo "$@" | grep -q "$(cat "$here/fails")"; then exit 4; fi
 command=$1
 while [ $# -gt 1 ]; do
   if [ "$1" = --out ]; then
     if [ $command = run ]; then
-      mkdir -p "$2" && touch "$2/summary.json" "$2/history.parquet"
+      mkdir -p "$2" && date +%N > "$2/summary.json" && touch "$2/history.parquet"
     elif [ $command = point ]; then
       mkdir -p "$2"
       for test in triaxial stiff_confinement; do
@@ -65,17 +71,18 @@ def tree(tmp_path_factory):
     return root
 
 
-def snakemake(root, *arguments, suite="three"):
+def snakemake(root, *arguments, suite="three", **config):
     environment = dict(os.environ, PATH=f"{root / 'bin'}{os.pathsep}{os.environ['PATH']}")
+    settings = [f"suite=configs/{suite}.yaml", *(f"{key}={value}" for key, value in config.items())]
     return subprocess.run(
-        [sys.executable, "-m", "snakemake", "--config", f"suite=configs/{suite}.yaml", *arguments],
+        [sys.executable, "-m", "snakemake", "--config", *settings, *arguments],
         cwd=root, env=environment, capture_output=True, text=True, timeout=300,
     )  # fmt: skip
 
 
-def planned(root, suite="three"):
+def planned(root, *targets, suite="three"):
     """Jobs of a dry run: rule -> count."""
-    done = snakemake(root, "--dry-run", suite=suite)
+    done = snakemake(root, "--dry-run", "--", *targets, suite=suite)
     assert done.returncode == 0, done.stderr
     return {rule: int(n) for rule, n in re.findall(r"^(\w+) +(\d+)$", done.stdout, re.MULTILINE)}
 
@@ -90,10 +97,51 @@ def test_second_call_has_nothing_to_do(tree):
     assert planned(tree) == {}
 
 
+def said_by(root):
+    """Commands of the stand-in since the last call."""
+    said = root / "bin" / "said"
+    lines = said.read_text().splitlines() if said.exists() else []
+    said.unlink(missing_ok=True)
+    return lines
+
+
+def runs_in(said):
+    """Cases that were run, by name."""
+    return sorted(line.split()[1] for line in said if line.startswith("run "))
+
+
+def test_case_that_failed_is_not_hidden_by_the_figures_of_its_older_run(tree):
+    suite = tree / "configs" / "three.yaml"
+    edited(suite, "confinement_MPa: 10", "confinement_MPa: 12")
+    (tree / "bin" / "fails").write_text("run sandstone_triaxial_p10")
+    assert snakemake(tree, "--cores", "2").returncode != 0
+    (tree / "bin" / "fails").unlink()
+    assert planned(tree)["simulate"] == 1
+    edited(suite, "confinement_MPa: 12", "confinement_MPa: 10")
+    assert snakemake(tree, "--cores", "2").returncode == 0
+
+
+def test_stopped_pipeline_goes_on_where_it_was(tree):
+    """Of two cases one fails: the other is kept, and the next call runs the one alone."""
+    path = tree / "configs" / "cases" / "sandstone_triaxial.yaml"
+    edited(path, "end_strain: 0.025", "end_strain: 0.023")
+    said_by(tree)
+    (tree / "bin" / "fails").write_text("run sandstone_triaxial_p10")
+    assert snakemake(tree, "--cores", "2", "--keep-going").returncode != 0
+    (tree / "bin" / "fails").unlink()
+    assert runs_in(said_by(tree)) == ["sandstone_triaxial_p00", "sandstone_triaxial_p10"]
+    assert snakemake(tree, "--cores", "2").returncode == 0
+    assert runs_in(said_by(tree)) == ["sandstone_triaxial_p10"]
+    assert planned(tree) == {}
+    edited(path, "end_strain: 0.023", "end_strain: 0.025")
+    assert snakemake(tree, "--cores", "2").returncode == 0
+
+
 def test_edit_of_a_case_in_the_suite_reruns_that_case_alone(tree):
     suite = tree / "configs" / "three.yaml"
     edited(suite, "confinement_MPa: 10", "confinement_MPa: 11")
-    assert planned(tree)["simulate"] == 1
+    done = snakemake(tree, "--dry-run")
+    assert re.findall(r"Mesh and run (\w+)", done.stdout) == ["sandstone_triaxial_p10"]
     edited(suite, "confinement_MPa: 11", "confinement_MPa: 10")
     assert planned(tree) == {}
 
@@ -112,9 +160,21 @@ def test_edit_of_a_plot_draws_again_and_runs_nothing(tree):
     text = path.read_text()
     path.write_text(text + "\n")
     jobs = planned(tree)
-    assert not {"simulate", "bench"} & set(jobs)
-    assert jobs["plot_suite"] == 1
+    assert not {"simulate", "bench", "run_quick"} & set(jobs)
+    assert (jobs["plot_suite"], jobs["plot_run"]) == (1, 2)  # of the two scenes
     path.write_text(text)
+    assert planned(tree) == {}
+
+
+def test_edit_of_a_caption_or_a_sheet_writes_pages_and_draws_nothing(tree):
+    for path in ("captions/energy.rst", "sheets/6_punch.md"):
+        file = tree / "reports" / path
+        text = file.read_text()
+        file.write_text(text + "\n")
+        jobs = planned(tree)
+        assert set(jobs) <= {"page", "summary", "all", "total"}
+        assert jobs["page"] >= 1
+        file.write_text(text)
 
 
 def test_new_digitised_curve_redraws_the_figures(tree):
@@ -151,16 +211,62 @@ def test_cracks_and_comparisons_are_drawn_where_the_suite_has_them_and_only_ther
   punch_discrete: {extends: cases/punch.yaml, set: {fracture.mode: inter_element}}
 """
     (tree / "configs" / "six.yaml").write_text(text + more)
-    jobs = planned(tree, "six")
+    jobs = planned(tree, suite="six")
     assert (jobs["simulate"], jobs["plot_cracks"], jobs["plot_compared"]) == (3, 2, 4)
     assert not {"plot_cracks", "plot_compared"} & set(planned(tree))
 
 
 def test_pages_are_filled_when_they_are_asked_for_and_only_then(tree):
-    picture = tree / "reports" / "gallery" / "sandstone.png"
-    picture.unlink(missing_ok=True)
     assert not (tree / "README.md").exists()  # the runs before have not touched it
+    said_by(tree)
     done = snakemake(tree, "--cores", "2", "pages")
     assert done.returncode == 0, done.stderr
     assert (tree / "README.md").exists()
-    assert picture.exists()
+    shown = " ".join(f"out/gallery/{name}.png" for name in ("sandstone", "strength"))
+    assert said_by(tree)[-1] == f"gallery out {shown} --out reports/gallery"
+
+
+@pytest.mark.parametrize("suite", ["suite", "suite_quick"])
+def test_every_figure_of_a_suite_stands_on_a_sheet_and_has_a_caption(tree, suite):
+    done = snakemake(tree, "--dry-run", "--forceall", "--printshellcmds", suite=suite)
+    assert done.returncode == 0, done.stderr
+    figures = set(re.findall(r"out/figures/([\w.@-]+)\.(?:svg|png)", done.stdout))
+    assert len(figures) > 20
+    sheets = load_sheets(tree / "reports" / "sheets")
+    for figure in figures:
+        assert category_of(figure, sheets)
+        words = caption(figure, tree / "reports" / "captions", tree / "out")
+        assert "Source." in words
+        assert "Units." in words
+
+
+def test_report_has_a_category_for_each_scene(tree):
+    done = snakemake(tree, "--report", "out/report.html")
+    assert done.returncode == 0, done.stderr
+    text = (tree / "out" / "report.html").read_text()
+    for sheet in load_sheets(tree / "reports" / "sheets"):
+        assert sheet.category in text
+
+
+def test_regression_runs_the_quick_suite_and_fails_on_drift(tree):
+    jobs = planned(tree, "regression")
+    assert set(jobs) == {"run_quick", "regression", "total"}
+    done = snakemake(tree, "--cores", "2", "regression")
+    assert done.returncode == 0, done.stderr
+    assert planned(tree, "regression") == {"regression": 1, "total": 1}
+    (tree / "bin" / "fails").write_text("^compare ")
+    assert snakemake(tree, "--cores", "2", "regression").returncode != 0
+    (tree / "bin" / "fails").unlink()
+
+
+def test_references_are_not_replaced_without_a_reason(tree):
+    done = snakemake(tree, "--dry-run", "update_references")
+    assert done.returncode != 0
+    assert "no reason, expected --config why=" in done.stdout + done.stderr
+    done = snakemake(tree, "--dry-run", "--printshellcmds", "update_references", why="it's finer")
+    assert done.returncode == 0, done.stderr
+    jobs = {rule: int(n) for rule, n in re.findall(r"^(\w+) +(\d+)$", done.stdout, re.MULTILINE)}
+    assert jobs["portable"] == jobs["update_references"] == 1
+    assert jobs["run_quick"] > 14  # the portable build, and more meshes of what cracks
+    assert "PYTHONPATH=build/portable-site lithofrac run punch_discrete@seed2 " in done.stdout
+    assert """--why 'it'"'"'s finer'""" in done.stdout

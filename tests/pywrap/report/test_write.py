@@ -55,27 +55,40 @@ def test_report_holds_every_sheet_with_its_numbers(out):
     assert "experiment: not digitised" in text
 
 
-def test_report_shows_the_figures_that_are_there(out):
+def test_report_shows_the_figures_that_are_there_with_their_captions(out):
     (out / "figures").mkdir()
     (out / "figures" / "strength.svg").touch()
     write_report(out, out / "report.md", SHEETS)
     text = (out / "report.md").read_text()
-    assert "](figures/strength.svg)" in text
-    assert "](figures/stress_strain.svg)" not in text
+    assert 'src="figures/strength.svg"' in text
+    assert "Strength of the sandstone specimens against confinement" in text
+    assert 'src="figures/stress_strain.svg"' not in text
+
+
+def test_page_of_a_scene_holds_its_figures_and_captions_in_itself(out):
+    (out / "figures").mkdir()
+    for name in ("strength.svg", "punch.svg"):
+        (out / "figures" / name).write_text("<svg/>")
+    write_report(out, out / "pages" / "2_sandstone_triaxial.html", SHEETS)
+    page = (out / "pages" / "2_sandstone_triaxial.html").read_text()
+    assert re.findall(r'src="([^"]+)"', page) == ["data:image/svg+xml;base64,PHN2Zy8+"]
+    assert re.search(r"<figcaption>\s*<p>.*<strong>Units.</strong>.*</figcaption>", page, re.DOTALL)
+    assert "<!-- figures" not in page
 
 
 def test_report_shows_the_figures_of_each_case_with_cracks(
     out, make_cracked_run, data_folder, tmp_path
 ):
     runs = [make_cracked_run("sandstone_soft_p00"), make_cracked_run("punch_discrete")]
-    draw("cracks", runs, out / "tables" / "cracks.csv", data_folder)
+    for table in ("cracks", "run_time"):
+        draw(table, runs, out / "tables" / f"{table}.csv", data_folder)
     (out / "figures").mkdir()
     for name in ("events_punch_discrete", "fractures_sandstone_soft_p00", "fractures_of_old"):
         (out / "figures" / f"{name}.svg").touch()
     write_report(out, out / "report.md", SHEETS)
     text = (out / "report.md").read_text()
-    assert "![punch_discrete: stress, and when each crack opened](figures/events_punch_d" in text
-    assert "](figures/fractures_sandstone_soft_p00.svg)" in text
+    assert 'src="figures/events_punch_discrete.svg"' in text
+    assert 'src="figures/fractures_sandstone_soft_p00.svg"' in text
     assert "fractures_of_old" not in text
     assert "| sandstone_soft_p00 | - | 3 | 3 | 66.67 | 1 | 1 | -60 |" in text
 
