@@ -22,7 +22,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     """Mesh of one run, rebuilt boundary conditions drawn on it."""
     run = find_runs(inputs)[0]
     problem = make_problem(load_case(run.folder / "case.yaml"), Mesh.load(run.folder / "mesh.npz"))
-    drawn, axes = style.new_figure(height=4.6, width=5.6)
+    drawn, axes = style.new_figure(height=4.2)
     draw_problem(axes[0, 0], problem)
     handles, labels = axes[0, 0].get_legend_handles_labels()
     single = dict(zip(labels, handles, strict=True))
@@ -34,11 +34,12 @@ def draw_problem(axes: Axes, problem: Problem) -> None:
     """Draw triangles by body, rollers, prescribed velocities and pressures; millimetres."""
     draw_mesh(axes, problem.mesh)
     size = float(np.ptp(1e3 * problem.mesh.nodes, axis=0).max())
-    for load in problem.velocity_loads:
-        if load.speed == 0.0:
+    moved = [load for load in problem.velocity_loads if load.speed != 0.0]
+    for load in moved:
+        draw_velocity(axes, problem.mesh, load, size)
+    for load in problem.velocity_loads:  # what moves along one axis only is guided, not held
+        if load.speed == 0.0 and not any(np.array_equal(load.nodes, own.nodes) for own in moved):
             draw_rollers(axes, problem.mesh, load, size)
-        else:
-            draw_velocity(axes, problem.mesh, load, size)
     for load in problem.pressure_loads:
         draw_pressure(axes, problem.mesh, load, size)
     axes.set_aspect("equal")
@@ -75,8 +76,10 @@ def draw_rollers(axes: Axes, mesh: Mesh, load: VelocityLoad, size: float) -> Non
 
 
 def draw_velocity(axes: Axes, mesh: Mesh, load: VelocityLoad, size: float) -> None:
-    """Draw arrows of a prescribed velocity outside the nodes it acts on."""
-    tips = 1e3 * _some(mesh.nodes[load.nodes])
+    """Draw arrows of a prescribed velocity outside the outermost of the nodes it acts on."""
+    outward = mesh.nodes[load.nodes, load.component] * _outward(mesh, load)
+    outermost = load.nodes[np.isclose(outward, outward.max(), rtol=0.0, atol=1e-9 * size)]
+    tips = 1e3 * _some(mesh.nodes[outermost])
     step = np.zeros(2)
     step[load.component] = np.sign(load.speed) * 0.07 * size
     away = _outward(mesh, load) * np.sign(load.speed)
@@ -115,12 +118,10 @@ def _arrows(axes: Axes, tips: np.ndarray, steps: np.ndarray, colour: str) -> Non
 
 
 def _outward(mesh: Mesh, load: VelocityLoad) -> float:
-    """Side of the body on which a set of nodes lies, +1 or -1, along its component."""
-    body = np.isin(mesh.triangles, load.nodes).any(axis=1)
-    own = mesh.triangles[np.isin(mesh.body, np.unique(mesh.body[body]))]
-    low = mesh.nodes[own, load.component].min()
-    high = mesh.nodes[own, load.component].max()
-    return 1.0 if mesh.nodes[load.nodes, load.component].mean() > 0.5 * (low + high) else -1.0
+    """Side of the scene on which a set of nodes lies, +1 or -1, along its component."""
+    along = mesh.nodes[:, load.component]
+    middle = 0.5 * (along.min() + along.max())
+    return 1.0 if along[load.nodes].mean() > middle else -1.0
 
 
 def _some(points: np.ndarray) -> np.ndarray:
