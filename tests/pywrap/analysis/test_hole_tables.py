@@ -122,7 +122,10 @@ def test_null_run_without_the_event_of_the_others_does_not_hold(make_hole, data_
     assert cell(table, "verdict", **keys) == FAILS
 
 
-@pytest.mark.parametrize(("stress", "word"), [(12.5, CONVERGED), (12.7, NOT_CONVERGED)])
+@pytest.mark.parametrize(
+    ("stress", "word"),
+    [(12.5, CONVERGED), (12.7, NOT_CONVERGED), (11.5, CONVERGED), (6.0, NOT_CONVERGED)],
+)
 def test_finer_run_is_converged_within_five_percent(make_hole, data_folder, stress, word):
     folders = [make_hole("hole_r25.0", cracks=[TENSILE]),
                make_hole("hole_r25.0_fine", cracks=[(stress, 0.0, 1.1, "tensile")])]  # fmt: skip
