@@ -3,8 +3,9 @@
 Three zones: primary, the probes at the crown; sidewall, those at both sides; remote, the fan of
 probes beside the primary crack. Three criteria, each gives an axial stress with an interval:
 
-- `curvature`: the gauge leaves its straight line (`initiation.find_kink`), most extensional
-  principal strain at crown and fan, most compressive one at the sidewalls, as in Fig. 15;
+- `curvature`: the gauge leaves its straight line (`initiation.find_kink`), in tension not before
+  its element softens; most extensional principal strain at crown and fan, most compressive one at
+  the sidewalls, as in Fig. 15;
 - `exhaustion`: the tensile strength of the gauge's element is used up;
 - `crack`: the first discrete crack in the zone. It is tensile at crown and fan, where a crack of
   compressive dilation belongs to a shear band from the sidewall.
@@ -32,6 +33,7 @@ ZONES = {"primary": "crown", "remote": "remote", "sidewall": "sidewall"}  # zone
 CRITERIA = ("curvature", "exhaustion", "crack")
 RESOLUTION = 1e-6  # strain that a foil gauge tells apart
 USED_UP = 0.01  # share of the tensile strength that counts as none
+WHOLE = 1e-9  # share of the tensile strength that rounding may take
 SOFTENED = 0.999  # share of the tensile strength below which an element has begun to soften
 
 AFTER = "after the peak"  # note of an event of a block that has failed
@@ -138,16 +140,21 @@ class HoleRun:
         while kink := find_kink(self.stress[start:], gauge.strain[start:], RESOLUTION):
             extends = kink.slope_after > kink.slope_before
             if not remote or (extends and self.stress[gauge.softens] <= kink.high):
-                return Event(
-                    zone, "curvature", gauge.name, kink.stress, kink.low, kink.high,
-                    self._time_of(kink), "",
-                )  # fmt: skip
+                return self._bent(zone, gauge, kink)
             start += kink.last
         return _none(zone, "curvature", "bends without softening" if start else "no kink")
 
-    def _time_of(self, kink: Kink) -> float:
-        """Moment at which the stress first reaches that of a kink [s]."""
-        return float(self.times[int(np.argmax(self.stress >= kink.stress))])
+    def _bent(self, zone: str, gauge: Gauge, kink: Kink) -> Event:
+        """A kink as an event. In tension a gauge cannot bend before its own element softens: two
+        straight lines through a curve that bends on meet up to 5 % before that."""
+        stress, low, high = kink.stress, kink.low, kink.high
+        yielded = np.flatnonzero(gauge.strength < 1.0 - WHOLE)
+        if zone != "sidewall" and yielded.size:
+            before, after = map(float, self.stress[yielded[0] - 1 : yielded[0] + 1])
+            if stress < after <= kink.window:
+                stress, low, high = after, before, max(high, after)
+        moment = float(self.times[int(np.argmax(self.stress >= stress))])
+        return Event(zone, "curvature", gauge.name, stress, low, high, moment, "")
 
     def _used_up(self, zone: str, gauge: Gauge) -> Event:
         """Row from which no tensile strength is left; the interval is that between two records."""

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from lithofrac.analysis.hole import HoleRun
+from lithofrac.analysis.hole import WHOLE, HoleRun
 from lithofrac.analysis.hole_tables import MPA, hole_initiation, hole_runs
 from lithofrac.analysis.mohr_coulomb import first_yield
 from lithofrac.analysis.verdict import OPEN, verdict
@@ -16,7 +16,6 @@ COLUMNS = [
 ]  # fmt: skip
 NULL_OF = "hole_r25.0"  # Gf of the null tests is in proportion to R, that of R = 25 mm unchanged
 VARIANTS = {"fine": "half the element size", "slow": "half the speed"}
-WHOLE = 1e-9  # share of the tensile strength that rounding may take
 ELASTIC, CONVERGED, NOT_CONVERGED = "above the elastic solution", "converged", "not converged"
 
 

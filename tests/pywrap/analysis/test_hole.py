@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lithofrac.analysis.hole import AFTER, HoleRun, is_hole
+from lithofrac.analysis.initiation import Kink
 from lithofrac.analysis.runs import Run
 
 pytestmark = pytest.mark.no_core
@@ -21,6 +22,24 @@ def test_bend_of_each_zone_is_found_on_its_first_gauge(make_hole, zone, kink):
     assert event.stress == pytest.approx(kink, abs=0.05)
     assert event.low <= event.stress <= event.high
     assert event.probe in ("crown", "remote_01", "sidewall_right")
+
+
+@pytest.mark.parametrize(
+    ("zone", "probe", "window", "stress"),
+    [
+        ("primary", "crown", 6.0, 4.0),  # put where the element begins to soften
+        ("primary", "crown", 3.9, 3.5),  # which is beyond the window: another bend
+        ("sidewall", "sidewall_right", 12.0, 3.5),
+    ],
+)
+def test_tension_gauge_does_not_bend_before_its_element_softens(
+    make_hole, zone, probe, window, stress
+):
+    run = HoleRun(Run(make_hole("hole_r25.0")))
+    early = Kink(3.5, 3.4, 3.6, 1.0, 2.0, 0.0, window, 100)
+    event = run._bent(zone, run.gauges[probe], early)
+    assert event.stress == pytest.approx(stress, abs=2 * RECORD)
+    assert event.low <= event.stress <= event.high
 
 
 def test_principal_strain_takes_shear_as_engineering_shear(make_hole):
