@@ -31,6 +31,7 @@ OWN_FILES = (
     "fragments.parquet",
     "checkpoint.npz",
     "checkpoint_previous.npz",
+    "checkpoint_failed.npz",
     "fields.pvd",
     "fields/frame_[0-9]*.vtu",
     "fields/failed.vtu",
@@ -117,6 +118,7 @@ def run(options: Namespace) -> int:
             threads=options.threads,
             resume=options.resume,
             progress=None if options.quiet else progress,
+            warn=None if options.quiet else progress.warn,
             meta={"case": name, "title": case.title, "commit": _commit()},
         )
     except KeyboardInterrupt:

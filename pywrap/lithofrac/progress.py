@@ -30,6 +30,14 @@ class Progress:
             self.written = time.monotonic()
             print(f"{self.name}: {line(report)}", file=self.stream, flush=True)
 
+    def warn(self, said: str) -> None:
+        """Put a sentence on a line of its own."""
+        text = f"{self.name}: warning: {said}"
+        if self.bar is None:
+            print(text, file=self.stream, flush=True)
+        else:
+            self.bar.write(text, file=self.stream)
+
     def close(self) -> None:
         """Leave the bar as it is and go to a new line."""
         if self.bar is not None:

@@ -12,6 +12,7 @@ from lithofrac.config.errors import ConfigError, sentences
 from lithofrac.config.extend import MATERIALS, Draft, nested, read_draft
 from lithofrac.config.fit import misfits
 from lithofrac.config.fracture import FractureSection
+from lithofrac.config.guards import GuardsSection
 from lithofrac.config.loading import Loading
 from lithofrac.config.material import Material, find_material
 from lithofrac.config.platens import PlatensSection
@@ -78,6 +79,8 @@ class Case(Section):
     probes: dict[str, Probe] = Field(default_factory=dict)
     """Points to record, beside those that the scene has anyway."""
     output: Output = Output()
+    guards: GuardsSection = GuardsSection()
+    """When a run is worth a warning, and when it is stopped."""
 
     @model_validator(mode="after")
     def _parts_fit_together(self):

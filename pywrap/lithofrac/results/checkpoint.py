@@ -12,8 +12,9 @@ from lithofrac.errors import CheckpointError
 from lithofrac.problem import Problem
 from lithofrac.results.files import write_whole
 
-FORMAT = 3  # raise it whenever the meaning of a stored number changes
+FORMAT = 4  # raise it whenever the meaning of a stored number changes
 NAME, PREVIOUS = "checkpoint.npz", "checkpoint_previous.npz"
+FAILED = "checkpoint_failed.npz"  # to look at; nothing resumes from it
 
 
 def fingerprint(problem: Problem) -> str:
@@ -42,8 +43,17 @@ def write(folder: Path, mark: str, arrays: dict[str, np.ndarray]) -> None:
     new = folder / NAME
     if new.exists():
         new.replace(folder / PREVIOUS)
+    _write(new, mark, arrays)
+
+
+def write_failed(folder: Path, mark: str, arrays: dict[str, np.ndarray]) -> None:
+    """Write a state that no run may go on from; both good generations stay as they are."""
+    _write(folder / FAILED, mark, arrays)
+
+
+def _write(path: Path, mark: str, arrays: dict[str, np.ndarray]) -> None:
     stamp = {"format": np.array(FORMAT), "fingerprint": np.array(mark)}
-    write_whole(new, lambda part: np.savez(part, **stamp, **arrays))
+    write_whole(path, lambda part: np.savez(part, **stamp, **arrays))
 
 
 def read(folder: Path, mark: str) -> tuple[dict[str, np.ndarray], list[str]]:

@@ -12,11 +12,15 @@ from lithofrac.core import Run
 from lithofrac.results.files import write_whole
 
 
-def write_frame(path: Path, run: Run) -> None:
+def write_frame(path: Path, run: Run, numbered: bool = False) -> None:
     """Write the mesh of now with displacement, velocity and element state as one VTU file.
 
     Elements that were cut are left out; copies of a node share its reference position.
     Stress and strain are in the frame that rotates with the material; SI units in the names.
+
+    Parameters
+    ----------
+    numbered : also the numbers that messages give to nodes and elements, from 1
     """
     nodes, triangles, body, alive = run.mesh()
     displacement, velocity, _ = run.nodes()
@@ -35,6 +39,9 @@ def write_frame(path: Path, run: Run) -> None:
         points["contact_force_N"] = _with_zero(run.contact_forces())
     if run.problem.fracture is not None:
         cells["failure_factor"] = run.failure()[0][alive]
+    if numbered:
+        points["node"] = np.arange(1, len(nodes) + 1)
+        cells["element"] = np.flatnonzero(alive) + 1
     grid = meshio.Mesh(
         _with_zero(nodes),
         [("triangle", triangles[alive])],

@@ -7,6 +7,7 @@ from lithofrac.problem import (
     Contact,
     Damping,
     Fracture,
+    Guards,
     Measures,
     Mesh,
     PressureLoad,
@@ -32,6 +33,7 @@ def settings(case: Case, mesh: Mesh, points: dict[str, tuple[float, float]]) -> 
         "probes": probes(case, mesh, points),
         "records": case.output.records,
         "fields": case.output.fields,
+        "guards": Guards(**case.guards.model_dump()),
     }
 
 
