@@ -231,7 +231,7 @@ class Run:
     def watch(self) -> Sight:
         """What the guards look at; takes the time of a small part of a step."""
         values, places = _watch(self._handle)
-        return Sight(*map(float, values), *(int(place) - 1 for place in places))
+        return Sight(*values.tolist(), *(places - 1).tolist())
 
     def loads(self) -> np.ndarray:
         """Force [N] and displacement [m] of every load, (n, 2): velocities, then pressures.

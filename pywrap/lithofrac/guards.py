@@ -1,9 +1,8 @@
 """Runtime guards: what a run says while something goes wrong, and when it stops.
 
-Thresholds stand in `Problem.guards`. The ledger and the counts of contact are read at every record;
-what takes a walk over all nodes and elements at the first record of every `LOOK_STEPS` steps, at
-the start and at the end. Which records those are follows from the steps alone, and a look changes
-no bit of the run.
+Thresholds stand in `Problem.guards`. A look is taken at the first record of every `LOOK_STEPS`
+steps, at the start and at the end. Which records those are follows from the steps alone, and a look
+changes no bit of the run.
 
 The core itself ends a run that cannot go on: no return of a trial stress, parts that pass each
 other too fast, a velocity that is not finite, an element that has turned inside out.
@@ -12,13 +11,14 @@ other too fast, a velocity that is not finite, an element that has turned inside
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from lithofrac.core import Run
 from lithofrac.errors import GuardError
 
-LOOK_STEPS = 100
+LOOK_STEPS = 200  # a look takes the time of one step, and a mesh of a few elements that of four
 SLOWER = "try a smaller time_step_factor or loading speed"
 
 
@@ -65,8 +65,7 @@ GUARDS = (
 )
 
 
-@dataclass(frozen=True)
-class Reading:
+class Reading(NamedTuple):
     """A value and where it is; -1 for no node or no element."""
 
     value: float
@@ -85,7 +84,9 @@ class Watch:
 
     def __init__(self, run: Run, steps: int) -> None:
         self.run, self.steps = run, steps
-        self.limits = run.problem.guards
+        limits = vars(run.problem.guards)
+        self.stops = {guard.name: limits[f"{guard.name}_stop"] for guard in GUARDS}
+        self.warnings = {guard.name: limits[f"{guard.name}_warning"] for guard in GUARDS}
         self.first: dict[str, str] = {}  # guard -> sentence of its first warning
         self.worst: dict[str, float] = {}  # and the worst value since
 
@@ -94,7 +95,7 @@ class Watch:
 
         Parameters
         ----------
-        step_before : step of the last look, -1 at the first
+        step_before : step of the record before, -1 at the first
         residual : relative residual of the ledger now
 
         Raises
@@ -102,11 +103,13 @@ class Watch:
         GuardError
             At the first guard that stops the run.
         """
-        share = self.run.contact_statistics().unconverged_steps / self.steps
-        found = {"energy_residual": Reading(abs(residual)), "unconverged": Reading(share)}
         step = self.run.step
-        if step // LOOK_STEPS > step_before // LOOK_STEPS or step >= self.steps:
-            found |= self._walk()
+        if step // LOOK_STEPS == step_before // LOOK_STEPS and step < self.steps:
+            return []
+        found = self._walk() | {"energy_residual": Reading(abs(residual))}
+        if self.run.problem.contact is not None:
+            unconverged = self.run.contact_statistics().unconverged_steps
+            found["unconverged"] = Reading(unconverged / self.steps)
         new = []
         for guard in GUARDS:
             if guard.name in found:
@@ -152,24 +155,24 @@ class Watch:
 
     def _hold(self, guard: Guard, reading: Reading) -> list[str]:
         """Hold one reading against its limits; the sentence of a first warning."""
-        value = reading.value
-        for kind in ("stop", "warning"):
-            key = f"{guard.name}_{kind}"
-            limit = getattr(self.limits, key)
-            if not guard.is_bad(value, limit):
-                continue
-            known = guard.name in self.first
-            if known and kind == "warning":
-                self.worst[guard.name] = guard.worse(value, self.worst[guard.name])
-                return []
-            side = "below" if guard.falls else "above"
-            said = f"{self._where(reading)}: {guard.what} is {value:.3g}, {side} guards.{key} = "
-            said += f"{limit:g}"
-            if kind == "stop":
-                raise GuardError(f"{said}; {guard.advice}")
-            self.first[guard.name], self.worst[guard.name] = said, value
-            return [f"{said}; {guard.advice}"]
-        return []
+        name, value = guard.name, reading.value
+        if guard.is_bad(value, self.stops[name]):
+            raise GuardError(f"{self._said(guard, reading, 'stop')}; {guard.advice}")
+        if not guard.is_bad(value, self.warnings[name]):
+            return []
+        if name in self.first:
+            self.worst[name] = guard.worse(value, self.worst[name])
+            return []
+        said = self._said(guard, reading, "warning")
+        self.first[name], self.worst[name] = said, value
+        return [f"{said}; {guard.advice}"]
+
+    def _said(self, guard: Guard, reading: Reading, kind: str) -> str:
+        """Where and how far a value is beyond a limit."""
+        limit = (self.stops if kind == "stop" else self.warnings)[guard.name]
+        side = "below" if guard.falls else "above"
+        beyond = f"is {reading.value:.3g}, {side} guards.{guard.name}_{kind} = {limit:g}"
+        return f"{self._where(reading)}: {guard.what} {beyond}"
 
     def _where(self, reading: Reading) -> str:
         """Step, time, and the place in the undeformed mesh; the fastest node if it has none."""
