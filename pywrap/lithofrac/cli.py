@@ -33,6 +33,7 @@ OWN_FILES = (
     "checkpoint_previous.npz",
     "fields.pvd",
     "fields/frame_[0-9]*.vtu",
+    "fields/cracks_[0-9]*.vtu",
     "fields/failed.vtu",
     "mesh.npz",
     "case.yaml",
