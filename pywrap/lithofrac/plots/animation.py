@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.animation import PillowWriter
 from matplotlib.figure import Figure
+from tqdm import tqdm
 
 from lithofrac.analysis.frames import Frame
 from lithofrac.analysis.runs import Run, only_run
@@ -46,7 +47,7 @@ def write(inputs: list[Path], data: Path, out: Path) -> None:
 
     def record(part: Path) -> None:
         with writer.saving(film.drawn, str(part), dpi=DOTS):
-            for time_s, path in frames:
+            for time_s, path in tqdm(frames, run.name, unit="frame", disable=None, leave=False):
                 film.show(Frame.load(path, time_s))
                 writer.grab_frame()
             for _ in range(round(HOLD / pause)):

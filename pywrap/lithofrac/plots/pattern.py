@@ -49,7 +49,8 @@ def moments(run: Run) -> list[tuple[float, Path]]:
 
 def brightest(run: Run, frame: Frame) -> float:
     """Plastic strain at which the shade ends, from that of the rock in a frame."""
-    return float(np.quantile(frame.plastic_strain[run.is_rock(frame)], BRIGHT)) or 1.0
+    strain = frame.plastic_strain[run.is_rock(frame)]
+    return float(np.quantile(strain, BRIGHT)) or float(strain.max()) or 1.0
 
 
 def draw_pattern(axes: Axes, run: Run, frame: Frame, top: float) -> PolyCollection:
