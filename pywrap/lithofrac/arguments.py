@@ -10,22 +10,48 @@ import lithofrac
 from lithofrac._build import NATIVE
 
 
+class _Screen(argparse.RawDescriptionHelpFormatter):
+    """Lists commands one a line, without a line for their argument: help that fits a screen."""
+
+    def _format_action(self, action: argparse.Action) -> str:
+        if action.nargs != argparse.PARSER:
+            return super()._format_action(action)
+        self._dedent()  # the width of the column leaves no room for two levels
+        _, commands = super()._format_action(action).split("\n", 1)
+        self._indent()
+        return commands
+
+
 def parser() -> argparse.ArgumentParser:
     """The whole command line; `command` of what it parses is the name of the command."""
     found = argparse.ArgumentParser(
         prog="lithofrac",
+        usage="lithofrac [--help | --version] COMMAND ...",
         description="Rock fracture benchmarks: continuum with a crack band, explicit in time.",
         epilog="example: lithofrac run sandstone_triaxial_p10 --out out/p10\n"
-        "exit codes: 0 good, 2 bad input, 3 numerical failure, 4 numbers moved,\n"
-        "            130 interrupted",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        "`lithofrac COMMAND --help` shows the options of a command and an example.\n"
+        "exit: 0 good, 2 bad input, 3 numerical failure, 4 numbers moved, 130 interrupted",
+        formatter_class=_Screen,
+        add_help=False,
     )
+    found.add_argument("-h", "--help", action="help", help=argparse.SUPPRESS)
     version = f"lithofrac {lithofrac.__version__}, native: {str(NATIVE).lower()}"
-    found.add_argument("--version", action="version", version=version)
+    found.add_argument("--version", action="version", version=version, help=argparse.SUPPRESS)
     commands = found.add_subparsers(
-        title="commands", metavar="COMMAND", dest="command", required=True
+        title="commands", metavar="COMMAND", dest="command", required=True, prog="lithofrac"
     )
-    for add in (_check, _mesh, _run, _plot, _report, _gallery, _point, _compare, _references):
+    for add in (
+        _check,
+        _mesh,
+        _run,
+        _show,
+        _plot,
+        _report,
+        _gallery,
+        _point,
+        _compare,
+        _references,
+    ):
         add(commands)
     return found
 
@@ -79,6 +105,11 @@ def _run(commands) -> None:
     _source_of_case(one)
 
 
+def _show(commands) -> None:
+    one = _command(commands, "show", "print the summaries of runs side by side", "out/runs/punch_*")
+    one.add_argument("run", nargs="+", type=Path, metavar="DIR", help="results folder")
+
+
 def _plot(commands) -> None:
     one = _command(
         commands,
@@ -88,7 +119,9 @@ def _plot(commands) -> None:
     )
     one.add_argument("kind", metavar="KIND", help="what to draw; an unknown word lists all")
     one.add_argument("input", nargs="*", type=Path, metavar="INPUT", help="results folder or file")
-    one.add_argument("--out", type=_path, required=True, metavar="FILE", help=".svg .png .pdf .csv")
+    one.add_argument(
+        "--out", type=_path, required=True, metavar="FILE", help=".svg .png .pdf .csv .gif"
+    )
     one.add_argument("--data", type=Path, metavar="DIR", help="measured data, default data/")
 
 

@@ -6,6 +6,7 @@ modules are imported by the command that needs them.
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -22,34 +23,29 @@ if TYPE_CHECKING:
 
 GOOD, BAD_INPUT, NUMERICAL_FAILURE, MOVED, INTERRUPTED = 0, 2, 3, 4, 130
 MOST_STEPS = 1_000_000_000
-OWN_FILES = (
-    "summary.json",
-    "history.parquet",
-    "energy.parquet",
-    "probes.parquet",
-    "cracks.parquet",
-    "fragments.parquet",
-    "checkpoint.npz",
-    "checkpoint_previous.npz",
-    "fields.pvd",
-    "fields/frame_[0-9]*.vtu",
-    "fields/failed.vtu",
-    "mesh.npz",
-    "case.yaml",
-)  # what a run writes and the next one may delete
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run one command; returns its exit code."""
+    try:
+        try:
+            return _one_command(arguments)
+        finally:
+            sys.stdout.flush()  # not when Python ends, where a closed pipe is an error
+    except BrokenPipeError:  # `lithofrac check | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return GOOD
+
+
+def _one_command(arguments: list[str] | None) -> int:
     options = parser().parse_args(arguments)
     try:
         return COMMANDS[options.command](options)
     except KeyboardInterrupt:
         print("lithofrac: interrupted", file=sys.stderr)
         return INTERRUPTED
-    except BrokenPipeError:  # `lithofrac check | head`
-        sys.stderr.close()
-        return GOOD
+    except BrokenPipeError:
+        raise
     except Exception as error:
         code = _exit_code(error)
         if code is None:
@@ -130,6 +126,14 @@ def run(options: Namespace) -> int:
         signal.signal(signal.SIGTERM, before)
     if not options.quiet:
         _print_summary(name, summary, options.out)
+    return GOOD
+
+
+def show(options: Namespace) -> int:
+    """Print the summaries of runs."""
+    from lithofrac.analysis.overview import overview
+
+    print(overview(_present(options.run)))
     return GOOD
 
 
@@ -226,6 +230,7 @@ COMMANDS = {
     "check": check,
     "mesh": mesh,
     "run": run,
+    "show": show,
     "plot": plot,
     "report": report,
     "gallery": gallery,
@@ -311,7 +316,7 @@ def _prepare(options: Namespace, case: Case, mesh: Mesh) -> None:
     """Make the results folder; what an earlier run left there goes, unless it is resumed."""
     from lithofrac.config import ConfigError
     from lithofrac.config.setting import text_of
-    from lithofrac.results.files import write_whole
+    from lithofrac.results.files import OWN_FILES, write_whole
 
     out, named = options.out, Path(options.case)
     copy = out / "case.yaml"
