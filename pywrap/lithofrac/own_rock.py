@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -33,7 +34,7 @@ def fit(
     tests: list[Path],
     out: Path,
     base: str | None = None,
-    given: list[str] = (),
+    given: Sequence[str] = (),
     fit_on: list[float] | None = None,
     knots: list[float] | None = None,
 ) -> list[str]:
@@ -131,17 +132,19 @@ def _start(
         raise ConfigError(f"{curves[0].name}: the stress falls from the start, expected a rise")
     poisson = min(max(poisson, 0.01), 0.48) if lateral else values[ELASTIC[1]]
     values = values | {ELASTIC[0]: 1e-3 * young, ELASTIC[1]: poisson}
-    dilation = 10.0 if lateral else float(np.mean(values[DILATION]))  # of tests without lateral
+    # Of tests without lateral strains; a start only, where others give the dilation.
+    dilation = 10.0 if lateral else float(np.mean(_angles(values, source)))
     about = (curves, young, poisson, dilation)
-    if knots:
+    here = "the tests to fit"
+    try:
+        if not knots:
+            return first_table(*about, MOST_ROWS), values, free
         here = f"--knots {' '.join(f'{knot:g}' for knot in knots)}"
         if not (knots[0] >= 0.0 and all(b > a for a, b in pairwise(knots))):
-            raise ConfigError(f"{here}: expected numbers not below 0, each above the one before")
-        try:
-            return table_at(np.array(knots), *about), values, free
-        except ValueError as error:
-            raise ConfigError(f"{here}: {error}") from None
-    return first_table(*about, MOST_ROWS), values, free
+            raise ValueError("expected numbers not below 0, each above the one before")
+        return table_at(np.array(knots), *about), values, free
+    except ValueError as error:
+        raise ConfigError(f"{here}: {error}") from None
 
 
 def _refuse_missing(values: dict, needed: tuple, source: str) -> None:
@@ -177,23 +180,29 @@ def _unknowns(fitted: list[Triaxial], start: Start | None, values: dict, free: l
 
 def _given_dilation(values: dict, strain: np.ndarray, source: str) -> np.ndarray:
     """Dilation angles [degrees] at the rows of the table, from one number or a table."""
-    angles = np.atleast_1d(values[DILATION])
-    here = f"{source}: {DILATION}"
-    if angles.dtype.kind not in "if" or not angles.size:
-        raise ConfigError(f"{here} = {values[DILATION]}: expected a number or a list of numbers")
+    angles, here = _angles(values, source), f"{source}: {DILATION}"
     if angles.size == 1:
         return np.full(len(strain), float(angles[0]))
-    own = values.get(COLUMNS[0])
     if len(strain) == 1:
         raise ConfigError(
             f"{here} has {angles.size} values, but strengths alone give a table of one row, "
             f"expected one, as by --set {DILATION}=10"
         )
-    if own is None or len(own) != angles.size:
+    own = np.atleast_1d(values.get(COLUMNS[0]))
+    if own.dtype.kind not in "if" or own.shape != angles.shape or np.any(np.diff(own) <= 0.0):
         raise ConfigError(
-            f"{here} has {angles.size} values, expected one, or as many as in {COLUMNS[0]}"
+            f"{here} has {angles.size} values, expected one, or as many rising ones in {COLUMNS[0]}"
         )
     return np.interp(strain, own, angles)
+
+
+def _angles(values: dict, source: str) -> np.ndarray:
+    """The dilation angles that were given, (n,) [degrees]."""
+    given = values[DILATION]
+    listed = given if isinstance(given, (list, tuple)) else [given]
+    if not listed or any(type(angle) not in (int, float) for angle in listed):
+        raise ConfigError(f"{source}: {DILATION} = {given}: expected a number or a list of numbers")
+    return np.array(listed, dtype=float)
 
 
 def _digits(value: float) -> float:

@@ -81,6 +81,11 @@ def first_table(
     tests : with curves, at two confinements or more
     young, poisson : elastic constants [MPa], [-]
     dilation : angle where no lateral strain was measured [degrees]
+
+    Raises
+    ------
+    ValueError
+        When fewer than two confinements leave the elastic range.
     """
     columns = _columns(tests, young, poisson, dilation)
     grid = columns[0]
@@ -160,7 +165,10 @@ def _last_shared(tests: list[Triaxial], parts: list[tuple]) -> float:
     for test, (_, _, effective) in zip(tests, parts, strict=True):
         known = reached.get(test.confinement_MPa, 0.0)
         reached[test.confinement_MPa] = max(known, float(effective[-1]))
-    return sorted(reached.values())[-2]
+    last = sorted(reached.values())[-2]
+    if not last > 0.0:
+        raise ValueError("the curves of fewer than two confinements leave the elastic range")
+    return last
 
 
 def _increasing(values: np.ndarray) -> np.ndarray:
