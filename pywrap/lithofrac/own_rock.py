@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,9 +16,6 @@ from lithofrac.config.material import COLUMNS, Material, find_material
 from lithofrac.config.setting import settings
 from lithofrac.config.yaml_file import read_yaml, text_of
 from lithofrac.data.triaxial import Triaxial, load_triaxial
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 ELASTIC = ("young_modulus_GPa", "poisson_ratio")
 NEEDED = (*ELASTIC, "density_kg_m3", "tensile_strength_MPa", "fracture_energy_J_m2")
@@ -236,7 +232,7 @@ def _write(out: Path, text: str, fit: RockFit) -> list[Path]:
     from lithofrac.plots.rock_fit import rock_fit
     from lithofrac.results.files import write_whole
 
-    drawn: Figure = rock_fit(fit)
+    drawn = rock_fit(fit)
     beside = {name: out.with_name(f"{out.stem}{name}")
               for name in (".svg", "_parameters.csv", "_residuals.csv")}  # fmt: skip
     try:
