@@ -23,6 +23,7 @@ DILATION = "dilation_angle_deg"
 KEPT = (*NEEDED, "hardening", "coupling", "band_width")
 IGNORED = ("title", *COLUMNS[:3])  # a base may be a whole material; these come from the tests
 MOST_ROWS = 6
+SWELLS = 10.0  # dilation angle where nothing tells it [degrees]
 SIGNIFICANT = 7  # digits of a number in the file
 
 
@@ -129,7 +130,10 @@ def _start(
     poisson = min(max(poisson, 0.01), 0.48) if lateral else values[ELASTIC[1]]
     values = values | {ELASTIC[0]: 1e-3 * young, ELASTIC[1]: poisson}
     # Of tests without lateral strains; a start only, where others give the dilation.
-    dilation = 10.0 if lateral else float(np.mean(_angles(values, source)))
+    dilation = SWELLS
+    if not lateral:
+        reached = np.linspace(0.0, max(test.axial_strain[-1] for test in curves), 100)
+        dilation = float(_given_dilation(values, reached, source).mean())
     about = (curves, young, poisson, dilation)
     here = "the tests to fit"
     try:

@@ -72,9 +72,9 @@ def plastic_parts(test: Triaxial, young: float, poisson: float, dilation: float)
 def first_table(
     tests: list[Triaxial], young: float, poisson: float, dilation: float, most_rows: int
 ) -> Start:
-    """Table with rows where the curves bend most, at most `most_rows`.
+    """Table with rows at both ends, at the peak and where the curves bend most.
 
-    It ends where fewer than two confinements are left to tell cohesion from friction.
+    It has at most `most_rows`, 3 or more, and ends where fewer than two confinements are left to tell cohesion from friction.
 
     Parameters
     ----------
@@ -89,7 +89,9 @@ def first_table(
     """
     columns = _columns(tests, young, poisson, dilation)
     grid = columns[0]
-    rows = [0, GRID - 1]
+    peak = int(np.searchsorted(grid, _at_peak(tests, young, poisson, dilation)))
+    inside = NEAREST * grid[-1] < grid[min(peak, GRID - 1)] < (1.0 - NEAREST) * grid[-1]
+    rows = [0, *([peak] if inside else []), GRID - 1]
     while len(rows) < most_rows:
         miss = np.zeros(GRID)
         for column in columns[1:]:
@@ -148,6 +150,13 @@ def _columns(tests, young, poisson, dilation) -> list[np.ndarray]:
     sine = np.clip(ratio / (2.0 + np.maximum(ratio, 0.0)), 0.0, np.sin(np.radians(STEEPEST)))
     grid[0] = 0.0
     return [grid, cohesion, friction, np.degrees(np.arcsin(sine))]
+
+
+def _at_peak(tests: list[Triaxial], young: float, poisson: float, dilation: float) -> float:
+    """Plastic strain at the strength, median of the tests."""
+    strains = [plastic_parts(test, young, poisson, dilation)[2] for test in tests]
+    peaks = [int(np.argmax(test.axial_stress_MPa)) for test in tests]
+    return float(np.median([own[i] for own, i in zip(strains, peaks, strict=True)]))
 
 
 def _slope(strains: np.ndarray, grid: np.ndarray) -> np.ndarray:

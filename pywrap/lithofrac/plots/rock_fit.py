@@ -77,10 +77,10 @@ def draw_differences(axes: Axes, fit: RockFit) -> None:
         rms, _, _ = fit.error_percent(role)
         axes.plot(
             rows["confinement_MPa"], rows["difference_percent"], ls="none", mec=style.BLACK,
-            label=f"{role}: rms {rms:.1f} %", **MARKERS[role],
+            clip_on=False, label=f"{role}: rms {rms:.1f} %", **MARKERS[role],
         )  # fmt: skip
     reach = 1.5 * max(fit.strengths["difference_percent"].abs().max(), 0.1)
-    axes.set(xlabel="confinement [MPa]", ylabel="fitted less measured strength [%]")
+    axes.set(xlabel="confinement [MPa]", ylabel="fitted less measured\nstrength [%]")
     axes.set_xlim(0, 1.05 * max(fit.strengths["confinement_MPa"].max(), 1.0))
     axes.set_ylim(-reach, reach)
     axes.legend(loc="upper center", ncols=2)
