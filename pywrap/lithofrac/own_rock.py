@@ -130,10 +130,10 @@ def _start(
     poisson = min(max(poisson, 0.01), 0.48) if lateral else values[ELASTIC[1]]
     values = values | {ELASTIC[0]: 1e-3 * young, ELASTIC[1]: poisson}
     # Of tests without lateral strains; a start only, where others give the dilation.
-    dilation = SWELLS
+    dilation = np.array([[0.0], [SWELLS]])
     if not lateral:
-        reached = np.linspace(0.0, max(test.axial_strain[-1] for test in curves), 100)
-        dilation = float(_given_dilation(values, reached, source).mean())
+        strain = np.linspace(0.0, 1.0, 10_001) ** 2  # finer near 0, and beyond every table
+        dilation = np.array([strain, _given_dilation(values, strain, source)])
     about = (curves, young, poisson, dilation)
     here = "the tests to fit"
     try:

@@ -8,6 +8,7 @@ tests lie on a line, which gives cohesion and friction there (Klerck, Sellers & 
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
 from lithofrac.data.triaxial import Triaxial
 
@@ -53,34 +54,45 @@ def elastic_constants(tests: list[Triaxial]) -> tuple[float, float]:
     return float(np.median(moduli)), float(np.median(ratios)) if ratios else float("nan")
 
 
-def plastic_parts(test: Triaxial, young: float, poisson: float, dilation: float) -> tuple:
+def plastic_parts(test: Triaxial, young: float, poisson: float, dilation: np.ndarray) -> tuple:
     """Axial, lateral and effective plastic strain of a curve, (n,) each, none negative.
 
-    Without lateral strains the lateral part follows from the dilation angle [degrees].
+    Without lateral strains the lateral part follows from the flow rule and the dilation angles
+    (2, k): plastic strains and degrees.
     """
     elastic = (test.axial_stress_MPa - test.confinement_MPa) / young
     axial = np.maximum(test.axial_strain - elastic, 0.0)
     if test.lateral_strain is None:
-        sine = np.sin(np.radians(dilation))
-        lateral = 0.5 * axial * (1.0 + sine) / (1.0 - sine)
-    else:
-        lateral = np.maximum(test.lateral_strain - poisson * elastic, 0.0)
+        sine = np.sin(np.radians(dilation[1]))
+        swells = (1.0 + sine) / (1.0 - sine)  # twice the lateral over the axial strain
+        effective = np.linspace(0.0, axial.max() * _per_axial(swells.max()), GRID)
+        swells = np.interp(effective, dilation[0], swells)
+        per_axial = cumulative_trapezoid(1.0 / _per_axial(swells), effective, initial=0.0)
+        effective = np.maximum.accumulate(np.interp(axial, per_axial, effective))
+        return axial, np.sqrt(np.maximum(0.75 * effective**2 - 0.5 * axial**2, 0.0)), effective
+    lateral = np.maximum(test.lateral_strain - poisson * elastic, 0.0)
     effective = np.sqrt(2.0 / 3.0 * (axial**2 + 2.0 * lateral**2))  # eq. 7 on a straight path
     return axial, lateral, np.maximum.accumulate(effective)
 
 
+def _per_axial(swells):
+    """Effective over axial plastic strain (eq. 7), from twice the lateral over the axial one."""
+    return np.sqrt((2.0 + swells**2) / 3.0)
+
+
 def first_table(
-    tests: list[Triaxial], young: float, poisson: float, dilation: float, most_rows: int
+    tests: list[Triaxial], young: float, poisson: float, dilation: np.ndarray, most_rows: int
 ) -> Start:
     """Table with rows at both ends, at the peak and where the curves bend most.
 
-    It has at most `most_rows`, 3 or more, and ends where fewer than two confinements are left to tell cohesion from friction.
+    It has at most `most_rows`, 3 or more, and ends where fewer than two confinements are left to
+    tell cohesion from friction.
 
     Parameters
     ----------
     tests : with curves, at two confinements or more
     young, poisson : elastic constants [MPa], [-]
-    dilation : angle where no lateral strain was measured [degrees]
+    dilation : (2, k) plastic strains and angles [degrees], for tests without lateral strains
 
     Raises
     ------
@@ -106,7 +118,7 @@ def first_table(
 
 
 def table_at(
-    knots: np.ndarray, tests: list[Triaxial], young: float, poisson: float, dilation: float
+    knots: np.ndarray, tests: list[Triaxial], young: float, poisson: float, dilation: np.ndarray
 ) -> Start:
     """Table with rows at given plastic strains; other arguments as of `first_table`.
 
@@ -152,7 +164,7 @@ def _columns(tests, young, poisson, dilation) -> list[np.ndarray]:
     return [grid, cohesion, friction, np.degrees(np.arcsin(sine))]
 
 
-def _at_peak(tests: list[Triaxial], young: float, poisson: float, dilation: float) -> float:
+def _at_peak(tests: list[Triaxial], young: float, poisson: float, dilation: np.ndarray) -> float:
     """Plastic strain at the strength, median of the tests."""
     strains = [plastic_parts(test, young, poisson, dilation)[2] for test in tests]
     peaks = [int(np.argmax(test.axial_stress_MPa)) for test in tests]
