@@ -48,6 +48,11 @@ def test_curve_that_keeps_half_of_its_peak_has_no_complete_failure():
     assert (stages.b, stages.c, stages.d) == (200, 300, None)
 
 
+@pytest.mark.parametrize(("least", "d"), [(50.5, None), (49.5, 200)])
+def test_failure_is_complete_when_less_than_half_of_the_peak_is_left(least, d):
+    assert find_stages(*curve((0, 0), (1, 100), (2, least), (3, least))).d == d
+
+
 def test_stages_scale_with_the_stress_and_not_with_the_strain():
     strain, stress = curve(*PUNCH)
     assert find_stages(3.0 * strain, 7.0 * stress) == find_stages(strain, stress)
