@@ -49,6 +49,7 @@ def parser() -> argparse.ArgumentParser:
         _report,
         _gallery,
         _point,
+        _fit,
         _compare,
         _references,
     ):
@@ -167,6 +168,50 @@ def _point(commands) -> None:
     )
     one.add_argument(
         "--out", type=_path, required=True, metavar="FILE", help="curve, .parquet, or a folder"
+    )
+
+
+FIT_FORMS = """tests as CSV, compression positive, one of two forms (files of both may be named):
+  strengths  confinement_MPa,strength_MPa   one row a test; sigma_1, not sigma_1 - sigma_3
+             (strength_min_MPa, strength_max_MPa and tests may stand beside them, unused)
+  curves     confinement_MPa,axial_strain,axial_stress_MPa   one row a point, in order of loading
+             also lateral_strain (extension positive) or volumetric_strain (dilation positive),
+             and test, a name, where two tests share a confinement
+strains are fractions counted from the isotropic state. Curves give E, with lateral strains also
+Poisson's ratio and dilation; everything else comes from --base, from TESTS.yaml beside TESTS.csv,
+or from --set. rock.svg, rock_parameters.csv and rock_residuals.csv are written beside rock.yaml.
+"""
+
+
+def _fit(commands) -> None:
+    one = _command(
+        commands,
+        "fit",
+        "fit a rock to triaxial tests",
+        "data/zigong/triaxial_strength.csv --base sandstone --set dilation_angle_deg=10\n"
+        "         --fit-on 10 30 50 70 --out out/zigong.yaml",
+    )
+    one.formatter_class = argparse.RawDescriptionHelpFormatter
+    one.epilog = f"{FIT_FORMS}\n{one.epilog}"
+    one.add_argument("tests", nargs="+", type=_path, metavar="TESTS", help="measured tests, .csv")
+    one.add_argument("--out", type=_path, required=True, metavar="FILE", help="material, .yaml")
+    one.add_argument("--base", metavar="ROCK", help="name or file of a material, see below")
+    one.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="a key of the material"
+    )
+    one.add_argument(
+        "--fit-on",
+        type=float,
+        nargs="+",
+        metavar="P",
+        help="confinements [MPa] to fit; the others are predicted (default: fit all)",
+    )
+    one.add_argument(
+        "--knots",
+        type=float,
+        nargs="+",
+        metavar="E",
+        help="plastic strains of the table (default: up to 6, where the curves bend most)",
     )
 
 

@@ -201,6 +201,15 @@ def point(options: Namespace) -> int:
     return GOOD
 
 
+def fit(options: Namespace) -> int:
+    """Fit a rock to triaxial tests and write its material file."""
+    from lithofrac.own_rock import fit as fit_to
+
+    o = options
+    print("\n".join(fit_to(o.tests, o.out, o.base, o.set, o.fit_on, o.knots)))
+    return GOOD
+
+
 def compare(options: Namespace) -> int:
     """Hold runs against the references; what moved is printed."""
     from lithofrac.analysis.references import read
@@ -235,6 +244,7 @@ COMMANDS = {
     "report": report,
     "gallery": gallery,
     "point": point,
+    "fit": fit,
     "compare": compare,
     "references": references,
 }

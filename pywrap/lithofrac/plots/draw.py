@@ -18,6 +18,7 @@ from lithofrac.analysis import (
 from lithofrac.analysis.claims import claims
 from lithofrac.analysis.punch import punch as punch_table
 from lithofrac.analysis.variants import variants as variants_table
+from lithofrac.analysis.zigong_prediction import zigong_prediction, zigong_prediction_error
 from lithofrac.data import DataError
 from lithofrac.plots import (
     animation,
@@ -73,6 +74,8 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "tautona": tables.tautona,
     "zigong": tables.zigong,
     "zigong_fit": tables.zigong_fit,
+    "zigong_prediction": zigong_prediction,
+    "zigong_prediction_error": zigong_prediction_error,
     "kirsch": tables.kirsch,
     "run_time": tables.run_time,
     "cracks": discrete.cracks,
