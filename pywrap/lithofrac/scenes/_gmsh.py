@@ -16,6 +16,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 
+NAMED = "'scene.geo', "  # gmsh names its own copy of the text
 TIME_LIMIT = 600.0  # seconds; meshes of the suite take less than one
 
 HEAD = """\
@@ -31,6 +32,10 @@ Mesh.Binary = 0;
 
 class MeshError(RuntimeError):
     """gmsh is missing or gave no mesh; the message holds its last words."""
+
+
+class GeoError(MeshError):
+    """gmsh does not accept the text that it was given."""
 
 
 @dataclass(frozen=True)
@@ -52,9 +57,22 @@ def mesh_from(geo: str) -> RawMesh:
     MeshError
         When gmsh cannot be started, fails, or leaves no triangles.
     """
+    return _raw(meshed(HEAD + geo))
+
+
+def meshed(geo: str) -> meshio.Mesh:
+    """What gmsh makes of a text, which may be anybody's: see `_script` for what is refused first.
+
+    Raises
+    ------
+    GeoError
+        When gmsh finds a mistake in it.
+    MeshError
+        When gmsh cannot be started, fails, or leaves no elements.
+    """
     with tempfile.TemporaryDirectory(prefix="lithofrac-") as name:
         folder = Path(name)
-        (folder / "scene.geo").write_text(HEAD + geo)
+        (folder / "scene.geo").write_text(geo)
         command = [*_gmsh(), "scene.geo", "-2", "-o", "scene.msh", "-noenv", "-v", "2"]
         own_home = {**os.environ, "HOME": name, "OMP_NUM_THREADS": "1"}
         try:
@@ -67,14 +85,25 @@ def mesh_from(geo: str) -> RawMesh:
         if done.returncode != 0 or not (folder / "scene.msh").exists():
             said = (done.stderr.strip() or done.stdout.strip() or "no message").splitlines()
             raise MeshError(f"gmsh gave no mesh: {said[-1]}")
-        return _raw(_read(folder / "scene.msh"))
+        wrong = [line for line in done.stderr.splitlines() if line.startswith("Error")]
+        if wrong:  # it goes on after a mistake, and ends well
+            words = wrong[0].partition(":")[2].strip()
+            raise GeoError(f"gmsh gave no mesh: {words.removeprefix(NAMED)}")
+        return read(folder / "scene.msh")
 
 
-def _read(path: Path) -> meshio.Mesh:
+def read(path: Path) -> meshio.Mesh:
+    """Read a .msh.
+
+    Raises
+    ------
+    MeshError
+        When meshio cannot.
+    """
     try:
         with contextlib.redirect_stdout(io.StringIO()):  # meshio prints empty lines
             return meshio.read(path)
-    except (ValueError, meshio.ReadError) as error:  # no elements at all
+    except (ValueError, LookupError, meshio.ReadError) as error:  # no elements at all
         raise MeshError(f"gmsh gave no mesh that can be read: {error}") from None
 
 
