@@ -75,8 +75,8 @@ def _wrong_types(read: meshio.Mesh) -> str:
 
 
 def _wrong_plane(read: meshio.Mesh) -> str:
-    if read.points.shape[1] < 3:
-        return ""
+    if not np.isfinite(read.points).all():
+        return "holds nodes at no place, expected numbers"
     z, extent = read.points[:, 2], np.ptp(read.points, axis=0).max()
     if np.abs(z).max() > FLAT * extent:
         return f"reaches from z = {z.min():g} to {z.max():g}, expected the plane z = 0"

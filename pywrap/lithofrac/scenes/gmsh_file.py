@@ -1,7 +1,9 @@
 """A geometry of one's own: a Gmsh file whose physical groups are the bodies and boundaries."""
 
 from itertools import combinations
+from pathlib import Path
 
+import meshio
 import numpy as np
 
 from lithofrac.config.base import MM, MPA
@@ -59,13 +61,12 @@ def _script(text: str, seed: int, named: str) -> str:
     return f"{BEFORE}{text}\n{AFTER}\nMesh.MeshSizeFactor = {factor!r} * Mesh.MeshSizeFactor;\n"
 
 
-def _read(path):
+def _read(path: Path) -> meshio.Mesh:
     try:
         return read(path)
     except MeshError as error:  # no gmsh was run
-        raise GeoError(
-            str(error).replace("gmsh gave no mesh that can be read", "no mesh")
-        ) from None
+        words = str(error).replace("gmsh gave no mesh that can be read", "cannot be read")
+        raise GeoError(words) from None
 
 
 def problem(case: Case, mesh: Mesh) -> Problem:
