@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from lithofrac.config.base import MM
 from lithofrac.config.contact import PLATEN, ROCK
 from lithofrac.config.element_count import MOST_ELEMENTS, element_count
-from lithofrac.config.gmsh_file import MESH, BoundaryLoading, GmshFile
+from lithofrac.config.gmsh_file import BoundaryLoading, GmshFile
 from lithofrac.config.loading import TractionLoading
 from lithofrac.config.material import Material
 from lithofrac.config.scene import SIZE_KEYS, Brazilian, Hole, PlaneStrain, Punch, Scene
@@ -43,9 +43,7 @@ def _own_geometry_problems(case: Case) -> list[str]:
     problems = _fracture_problems(case)
     if case.platens is not None:
         problems.append("platens: the scene gmsh_file has none but its own bodies, leave it out")
-    if scene.path.suffix == MESH and case.mesh.seed != 1:
-        problems.append(f"mesh.seed = {case.mesh.seed}: a {MESH} is one mesh, expected 1")
-    return problems
+    return [*problems, *scene.seed_problems(case.mesh.seed)]
 
 
 def too_large(material: Material, width: float) -> str:

@@ -52,6 +52,12 @@ class GmshFile(Section):
         """Length of one unit of the file [m]."""
         return UNITS[self.length_unit]
 
+    def seed_problems(self, seed: int) -> list[str]:
+        """A sentence where the file has no such realisation."""
+        if self.path.suffix == MESH and seed != 1:
+            return [f"mesh.seed = {seed}: a {MESH} is one mesh, expected 1"]
+        return []
+
 
 class Way(Section):
     """How far a boundary is moved; a component that is left out stays free."""

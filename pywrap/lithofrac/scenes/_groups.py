@@ -5,6 +5,7 @@ import numpy as np
 
 from lithofrac.config.element_count import MOST_ELEMENTS
 from lithofrac.config.errors import ConfigError
+from lithofrac.config.gmsh_file import MESH
 from lithofrac.scenes._gmsh import RawMesh
 
 KINDS = {1: "curve", 2: "surface"}  # dimension -> words
@@ -33,7 +34,10 @@ def groups(read: meshio.Mesh, named: str) -> RawMesh:
         dim: _of_type(read, tags, kind) for kind, dim in TYPES.items()
     }  # dimension -> cells, tags
     triangles, body = cells[2]
-    wrong = _wrong_groups(names, cells) or _wrong_triangles(read.points[:, :2], triangles)
+    wrong = _wrong_groups(names, cells)
+    if wrong.endswith("is empty") and named.endswith(MESH):
+        wrong += "; in format 4 a curve or surface counts for one group alone, expected format 2.2"
+    wrong = wrong or _wrong_triangles(read.points[:, :2], triangles)
     if wrong:
         raise ConfigError(f"{named}: {wrong}")
     numbers, body = np.unique(body, return_inverse=True)

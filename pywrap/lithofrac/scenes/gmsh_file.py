@@ -38,6 +38,8 @@ def mesh(case: Case, seed: int) -> Mesh:
         Where gmsh cannot be run.
     """
     scene = case.scene
+    if scene.seed_problems(seed):
+        raise ConfigError(scene.seed_problems(seed)[0])
     named = f"scene.file = {scene.file}"
     try:
         if scene.path.suffix == SCRIPT:

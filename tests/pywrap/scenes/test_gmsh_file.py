@@ -149,6 +149,26 @@ def test_a_mesh_file_is_read_as_it_is(case_of, tmp_path, options):
     assert read.edge_sets["top"].shape == whole.edge_sets["top"].shape
 
 
+def test_a_curve_in_two_groups_needs_format_2(case_of, tmp_path):
+    """meshio keeps one group of each curve of format 4."""
+    case = case_of("", CASE.replace("own.geo", "own.msh"), name="own.msh")
+    geo = SQUARE + GROUPS + 'Physical Curve("ends") = {1, 3};\n'
+    by_gmsh(geo, tmp_path / "own.msh", "-format", "msh22")
+    sets = make_mesh(case).edge_sets
+    both = np.concatenate([sets["bottom"], sets["top"]])
+    assert np.array_equal(np.unique(sets["ends"], axis=0), np.unique(both, axis=0))
+    by_gmsh(geo, tmp_path / "own.msh", "-format", "msh41")
+    with pytest.raises(ConfigError, match=r"is empty; in format 4 .* expected format 2\.2$"):
+        make_mesh(case)
+
+
+def test_a_mesh_file_has_one_realisation(case_of, tmp_path):
+    case = case_of("", CASE.replace("own.geo", "own.msh"), name="own.msh")
+    by_gmsh(SQUARE + GROUPS, tmp_path / "own.msh")
+    with pytest.raises(ConfigError, match=r"^mesh\.seed = 2: a \.msh is one mesh, expected 1$"):
+        make_mesh(case, 2)
+
+
 def test_a_built_in_scene_written_as_a_geo_has_the_same_bits(case_of, monkeypatch):
     written = []
     monkeypatch.setattr(
