@@ -40,7 +40,7 @@ class MeshError(RuntimeError):
 
 
 class GeoError(MeshError):
-    """gmsh does not accept the text that it was given."""
+    """A text that gmsh does not accept, or a mesh that cannot be read."""
 
 
 @dataclass(frozen=True)
@@ -71,9 +71,9 @@ def meshed(geo: str) -> meshio.Mesh:
     Raises
     ------
     GeoError
-        When gmsh finds a mistake in it.
+        When gmsh finds a mistake in it, or leaves no elements.
     MeshError
-        When gmsh cannot be started, fails, or leaves no elements.
+        When gmsh cannot be run.
     """
     with tempfile.TemporaryDirectory(prefix="lithofrac-") as name:
         folder = Path(name)
@@ -88,8 +88,9 @@ def meshed(geo: str) -> meshio.Mesh:
         except (OSError, subprocess.TimeoutExpired) as error:
             raise MeshError(f"gmsh could not be run: {error}") from None
         if done.returncode != 0 or not (folder / "scene.msh").exists():
-            said = (done.stderr.strip() or done.stdout.strip() or "no message").splitlines()
-            raise MeshError(f"gmsh gave no mesh: {said[-1]}")
+            said = [*done.stdout.splitlines(), *done.stderr.splitlines()]
+            words = [line for line in said if line.strip() and not line.startswith("Warning")]
+            raise GeoError(f"gmsh gave no mesh: {words[-1] if words else 'no message'}")
         wrong = [line for line in done.stderr.splitlines() if line.startswith("Error")]
         if wrong:  # it goes on after a mistake, and ends well
             words = wrong[0].partition(":")[2].strip()
@@ -102,7 +103,7 @@ def read(path: Path) -> meshio.Mesh:
 
     Raises
     ------
-    MeshError
+    GeoError
         When meshio cannot.
     """
     try:
@@ -110,7 +111,7 @@ def read(path: Path) -> meshio.Mesh:
             return meshio.gmsh.read(path)
     except MISREAD as error:
         words = str(error).strip().splitlines() or [type(error).__name__]
-        raise MeshError(f"gmsh gave no mesh that can be read: {words[0]}") from None
+        raise GeoError(f"no mesh that can be read: {words[0]}") from None
 
 
 def _gmsh() -> list[str]:

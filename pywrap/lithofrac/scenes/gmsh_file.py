@@ -1,9 +1,7 @@
 """A geometry of one's own: a Gmsh file whose physical groups are the bodies and boundaries."""
 
 from itertools import combinations
-from pathlib import Path
 
-import meshio
 import numpy as np
 
 from lithofrac.config.base import MM, MPA
@@ -13,7 +11,7 @@ from lithofrac.config.gmsh_file import SCRIPT, BoundaryLoading
 from lithofrac.problem import Measures, Mesh, PressureLoad, Problem, Ramp, VelocityLoad
 from lithofrac.scenes._common import settings
 from lithofrac.scenes._finish import finished
-from lithofrac.scenes._gmsh import GeoError, MeshError, meshed, read
+from lithofrac.scenes._gmsh import GeoError, meshed, read
 from lithofrac.scenes._groups import groups
 from lithofrac.scenes._script import forbidden
 from lithofrac.scenes._timing import time_to_go
@@ -45,7 +43,7 @@ def mesh(case: Case, seed: int) -> Mesh:
         if scene.path.suffix == SCRIPT:
             found = meshed(_script(scene.path.read_text(encoding="utf-8"), seed, named))
         else:
-            found = _read(scene.path)
+            found = read(scene.path)
     except (GeoError, UnicodeDecodeError) as error:
         raise ConfigError(f"{named}: {error}") from None
     raw = groups(found, named)
@@ -61,14 +59,6 @@ def _script(text: str, seed: int, named: str) -> str:
         return f"{BEFORE}{text}\n{AFTER}\n"
     factor = 1.0 + SPREAD * np.random.default_rng(seed).uniform(-1.0, 1.0)
     return f"{BEFORE}{text}\n{AFTER}\nMesh.MeshSizeFactor = {factor!r} * Mesh.MeshSizeFactor;\n"
-
-
-def _read(path: Path) -> meshio.Mesh:
-    try:
-        return read(path)
-    except MeshError as error:  # no gmsh was run
-        words = str(error).replace("gmsh gave no mesh that can be read", "cannot be read")
-        raise GeoError(words) from None
 
 
 def problem(case: Case, mesh: Mesh) -> Problem:

@@ -296,10 +296,11 @@ def test_bodies_have_their_own_materials_and_friction(case_of):
             "reaches from z = 1 to 1, expected the plane z = 0",
         ),
         (GROUPS + "Line(9) = {1, 99};", "gmsh gave no mesh: "),
+        (GROUPS + "Exit;", "gmsh gave no mesh: no message"),
         (GROUPS + "oops oops;", "gmsh gave no mesh: line 15: Unknown variable 'oops'"),
     ],
     ids=["none", "unnamed", "curve", "surface", "quads", "order", "twice", "apart", "z", "point",
-         "syntax"],
+         "exit", "syntax"],
 )  # fmt: skip
 def test_a_file_that_is_no_scene_is_refused_in_one_sentence(refused, text, message):
     said = refused(SQUARE + text)
@@ -313,7 +314,7 @@ def test_no_surface_at_all_is_refused(refused):
 
 def test_a_file_of_other_words_is_refused(refused, tmp_path):
     said = refused("no mesh\n", CASE.replace("own.geo", "own.msh"), name="own.msh")
-    assert said.startswith("cannot be read: ")
+    assert said.startswith("no mesh that can be read: ")
     assert "\n" not in said
 
 
