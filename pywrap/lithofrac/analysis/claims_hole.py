@@ -83,7 +83,7 @@ def _cracked(source: Source, cases: re.Pattern, zone: str) -> dict[str, pd.DataF
 
 def _primary_parallel(source: Source) -> dict[str, Value]:
     tables = _cracked(source, MAIN, "primary")
-    return {"direction": Value(direction_deg(pd.concat(tables.values())), f"runs: {len(tables)}")}
+    return {"direction": largest({name: direction_deg(table) for name, table in tables.items()})}
 
 
 def _remote_parallel(source: Source) -> dict[str, Value]:
@@ -182,10 +182,24 @@ def _falls(zone: str):
         same = means.nunique() == 1
         rank = 0.0 if same else float(spearmanr(means.index, means).statistic)
         note = f"{means.iloc[0]:.1f} to {means.iloc[-1]:.1f} MPa over {len(means)} radii"
+        note += _by_other_criteria(source, zone)
         ratio = float(means.iloc[-1] / means.iloc[0])
         return {"correlation": Value(rank, note), "ratio": Value(ratio)}
 
     return measures
+
+
+def _by_other_criteria(source: Source, zone: str) -> str:
+    """The same stresses by the criteria that are not the paper's, in words."""
+    table = source.table("size_effect")
+    chosen = (table["series"] == SERIES) & (table["zone"] == zone)
+    words = ""
+    for criterion, own in table[chosen].dropna(subset="mean_MPa").groupby("criterion"):
+        means = own.set_index("radius_mm")["mean_MPa"].sort_index()
+        if criterion != CRITERION:
+            words += f"; by {criterion} {means.iloc[0]:.1f} to {means.iloc[-1]:.1f} MPa"
+            words += f" from R = {means.index[0]:g} mm on"
+    return words
 
 
 def _asymptotes(source: Source) -> dict[str, Value]:

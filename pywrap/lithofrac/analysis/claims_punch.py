@@ -94,7 +94,10 @@ def _failure(source: Source) -> dict[str, Value]:
     stages, stress = _stages(run), _curve(run)[1]
     row = stages.d if stages.d is not None else len(stress) - 1
     note = "no complete failure" if stages.d is None else ""
-    return {"residual": Value(100.0 * stress[row] / stress[stages.a], note)}
+    return {
+        "residual": Value(100.0 * stress[row] / stress[stages.a], note),
+        "below_b": Value(float(stress[row] / stress[stages.b])),
+    }
 
 
 def _cone(source: Source) -> dict[str, Value]:

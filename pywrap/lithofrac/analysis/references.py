@@ -133,8 +133,7 @@ def tolerance(row, others: np.ndarray, amplified: bool) -> tuple[str, float, str
         return "absolute", 0.0, EXACT
     known = np.array([row.value, row.twin, *others[np.isfinite(others)]])
     if row.quantity == RESIDUAL:
-        largest = float(known.max())
-        return "below", LIMIT if largest <= LIMIT else MARGIN * largest, "limit"
+        return "below", LIMIT, "limit"
     spread = max(float(np.ptp(known)), MARGIN * row.rounding)
     if row.nature != "number":
         alone = row.quantity in OF_THE_MESH or not others.size

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from lithofrac.analysis.references import References, is_realisation
+from lithofrac.analysis.references import REALISATIONS, References, is_realisation
 from lithofrac.analysis.runs import Run
 from lithofrac.analysis.scalars import mesh_hash, scalars
 
@@ -95,11 +95,14 @@ def sentences(found: Comparison, references: References) -> list[str]:
 
 
 def _stays(rows: pd.DataFrame) -> pd.Series:
-    """Which numbers are where they may be."""
+    """Which numbers are where they may be; what was there may not vanish, however far counts
+    spread."""
     bounded = rows["kind"] == "below"
+    vanished = (rows["reason"] == REALISATIONS) & (rows["value"] > 0.0) & (rows["now"] == 0.0)
     change = (rows["now"] - rows["value"]).abs().where(~bounded, rows["now"].abs())
     both_nan = rows["now"].isna() & rows["value"].isna()
-    return (change <= rows["allowed"]) | both_nan | np.isinf(rows["allowed"])
+    stays = (change <= rows["allowed"]) | both_nan | np.isinf(rows["allowed"])
+    return stays & ~vanished
 
 
 def _number(value: float) -> str:

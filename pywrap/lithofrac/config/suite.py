@@ -47,7 +47,7 @@ class Suite(Section):
                 others = [known for known in self.cases if known != name]
                 raise ValueError(
                     f"cases.{name}.twin = {entry.twin}: expected another case of the suite, "
-                    f"{suggestion(entry.twin, others)}"
+                    f"{suggestion(entry.twin, others) if others else 'it has none'}"
                 )
         return self
 

@@ -25,7 +25,7 @@ LOOK = {
 }  # criterion -> marker, colour, shift along the radius so that ranges do not overlap [mm]
 OTHERS = {"mesh1mm": ("P", "wall elements of 1 mm"), "block150": ("D", "blocks of 150 mm")}
 THEORY = (
-    ("kirsch", ":", {"primary": "Kirsch: hoop tension is ft", "sidewall": "Kirsch: first yield"}),
+    ("kirsch", ":", {"primary": "Kirsch: hoop stress is ft", "sidewall": "Kirsch: first yield"}),
     ("average", "-.", {"primary": "average stress"}),
     ("coupled", (0, (6, 1.5)), {"primary": "finite fracture mechanics"}),
     ("cohesive", "-", {"primary": "cohesive crack, mouth open"}),

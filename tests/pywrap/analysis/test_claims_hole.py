@@ -193,6 +193,14 @@ def test_direction_and_mode_are_those_of_the_length_in_the_zone(make_hole):
     assert measured("hole_breakout", runs=[run])["compressive_share"] == pytest.approx(25.0)
 
 
+def test_primary_cracks_of_two_meshes_that_lean_apart_are_not_parallel(make_hole):
+    """The worst run counts: a mean over runs would be upright."""
+    lean = {name: (0.0, 10.5, 1.0 * way, 11.5, T, 0.5)
+            for name, way in (("hole_r25.0", 1.0), ("hole_r25.0@seed2", -1.0))}  # fmt: skip
+    runs = [make_hole(name, [crack]) for name, crack in lean.items()]
+    assert measured("hole_primary_parallel", runs=runs)["direction"] == pytest.approx(45.0)
+
+
 def test_remote_cracks_that_lean_to_both_sides_are_not_parallel(make_hole):
     lean = [(12.0, 14.0, 13.0, 15.0, T, 0.5), (-12.0, 14.0, -13.0, 15.0, T, 0.5)]
     run = make_hole("hole_r25.0", lean)

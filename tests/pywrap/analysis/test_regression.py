@@ -120,6 +120,16 @@ def test_counts_may_move_by_the_spread_of_the_realisations(held, finished, refer
 
 
 @no_core
+def test_cracks_that_vanish_have_moved_however_far_their_count_spreads(held, finished, references):
+    numbers = pd.read_csv(references / "numbers.csv")
+    wide = (numbers["case"] == "a") & (numbers["quantity"] == "cracks")
+    numbers.loc[wide, "tolerance"] = 1e3
+    numbers.to_csv(references / "numbers.csv", index=False)
+    assert not held(finished("a", cracks=1), finished("b"))[0].drifted
+    assert list(held(finished("a", cracks=0), finished("b"))[0].moved["quantity"]) == ["cracks"]
+
+
+@no_core
 def test_energies_are_held_by_the_largest_of_their_run(held, finished):
     near = {"external_J": 50.0, "kinetic_J": 1e-3 + 4e-5, "residual_J": 1.0}
     assert not held(finished("a", energy=near), finished("b"))[0].drifted
