@@ -7,6 +7,7 @@ modules are imported by the command that needs them.
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -82,9 +83,7 @@ def check(options: Namespace) -> int:
 
 def mesh(options: Namespace) -> int:
     """Mesh a case and save it."""
-    from lithofrac.scenes import make_mesh
-
-    made = make_mesh(_case(options.case, options), options.seed)
+    made = _made(options.case, _case(options.case, options), options.seed)
     options.out.parent.mkdir(parents=True, exist_ok=True)
     with open(options.out, "wb") as file:  # a handle, so that no suffix is added
         made.save(file)
@@ -277,17 +276,27 @@ def _mesh_of(case: Case, options: Namespace) -> Mesh:
     """Mesh of the folder that is resumed, of the file that is named, or a new one."""
     from lithofrac.config import ConfigError
     from lithofrac.problem import Mesh
-    from lithofrac.scenes import make_mesh
 
     path = options.out / "mesh.npz" if options.resume else options.mesh
     if path is None:
-        return make_mesh(case)
+        return _made(options.case, case)
     if options.resume and not path.exists():
         raise ConfigError(f"{path}: no such file, there is no run to resume in {options.out}")
     try:
         return Mesh.load(path)
     except (ValueError, KeyError, EOFError) as error:
         raise ConfigError(f"{path}: expected a mesh of `lithofrac mesh` ({error})") from None
+
+
+def _made(name: str, case: Case, seed: int | None = None) -> Mesh:
+    """A new mesh of a case."""
+    from lithofrac.config import ConfigError
+    from lithofrac.scenes import make_mesh
+
+    try:
+        return make_mesh(case, seed)
+    except ConfigError as error:
+        raise ConfigError(f"{name}: {error}") from None
 
 
 def _accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
@@ -301,9 +310,10 @@ def _accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
         problem = make_problem(case, mesh)
         expected = plan(problem)
     except (ConfigError, CoreError) as error:
-        raise ConfigError(f"{name}: {error}") from None
+        lines = str(error).splitlines()
+        raise ConfigError("\n".join(f"{name}: {line}" for line in lines)) from None
     if expected["steps"] > MOST_STEPS:
-        key = "hold_transits" if case.loading.kind == "traction" else "speed_m_s"
+        key = "hold_transits" if getattr(case.loading, "speed_m_s", None) is None else "speed_m_s"
         raise ConfigError(
             f"{name}: loading.{key} = {getattr(case.loading, key):g}: the run takes "
             f"{expected['steps']:.3g} steps, expected at most {MOST_STEPS}"
@@ -325,38 +335,45 @@ def _find_checkpoint(out: Path, problem: Problem) -> None:
 def _prepare(options: Namespace, case: Case, mesh: Mesh) -> None:
     """Make the results folder; what an earlier run left there goes, unless it is resumed."""
     from lithofrac.config import ConfigError
-    from lithofrac.config.setting import text_of
+    from lithofrac.config.setting import kept, text_of
     from lithofrac.results.files import OWN_FILES, write_whole
 
     out, named = options.out, Path(options.case)
-    copy = out / "case.yaml"
+    copy, (case, beside) = out / "case.yaml", kept(case)
     try:
         out.mkdir(parents=True, exist_ok=True)
         if options.resume:
             return
         if copy.exists() and named.exists() and copy.samefile(named):
             raise ConfigError(f"--out {out}: the run would replace its case file {named}")
+        for geometry, source in beside.items():
+            if (out / geometry).exists() and source.samefile(out / geometry):
+                raise ConfigError(f"--out {out}: the run would replace its geometry {source}")
         for pattern in OWN_FILES:
             for path in out.glob(pattern):
                 path.unlink()
         write_whole(out / "mesh.npz", mesh.save)
         write_whole(copy, lambda part: part.write_text(text_of(case)))
+        for geometry, source in beside.items():
+            write_whole(out / geometry, lambda part, source=source: shutil.copyfile(source, part))
     except OSError as error:
         raise ConfigError(f"--out {out}: cannot be written ({error.strerror})") from None
 
 
 def _print_plan(name: str, case: Case) -> None:
-    from lithofrac.scenes import make_mesh
+    import numpy as np
 
-    made = make_mesh(case)
+    made = _made(name, case)
     problem, expected = _accepted(name, case, made)
-    rock = made.body == 0  # platens come after it
+    of_case = [i for i, material in enumerate(problem.materials) if material == case.material]
+    rock = np.isin(made.body, of_case)
     width = float(case.material.band_width_of(made.areas()[rock].max()))
+    extent = " x ".join(f"{1e3 * length:.6g}" for length in np.ptp(made.nodes, axis=0))
     used = [feature for feature, uses in expected["uses"].items() if uses]
     unused = [feature for feature, uses in expected["uses"].items() if not uses]
     rows = [
         ("case", f"{name}: {case.title}"),
-        ("scene", f"{case.scene.kind}, mesh {case.mesh.seed}"),
+        ("scene", f"{case.scene.kind}, {extent} mm, mesh {case.mesh.seed}"),
         ("material", case.material.title or "without a title"),
         ("elements", f"{expected['elements']} on {expected['nodes']} nodes"),
         ("crack band", f"{1e3 * width:.3g} mm, {_limit(case)}"),

@@ -24,6 +24,8 @@ OWN_FILES = (
     "fields/failed.vtu",
     "mesh.npz",
     "case.yaml",
+    "geometry.geo",
+    "geometry.msh",
 )  # of a run: what the next one in the same folder may delete
 
 
