@@ -16,18 +16,30 @@ def parser() -> argparse.ArgumentParser:
         prog="lithofrac",
         description="Rock fracture benchmarks: continuum with a crack band, explicit in time.",
         epilog="example: lithofrac run sandstone_triaxial_p10 --out out/p10\n"
-        "exit codes: 0 good, 2 bad input, 3 numerical failure, 4 numbers moved,\n"
-        "            130 interrupted",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        "exit codes: 0 good, 2 bad input, 3 numerical failure, 4 moved, 130 interrupted",
+        formatter_class=_OneScreen,
     )
     version = f"lithofrac {lithofrac.__version__}, native: {str(NATIVE).lower()}"
     found.add_argument("--version", action="version", version=version)
     commands = found.add_subparsers(
         title="commands", metavar="COMMAND", dest="command", required=True
     )
-    for add in (_check, _mesh, _run, _plot, _report, _gallery, _point, _compare, _references):
+    for add in (_init, _check, _mesh, _run, _study, _plot, _report, _gallery, _point, _compare):
         add(commands)
+    _references(commands)
     return found
+
+
+class _OneScreen(argparse.RawDescriptionHelpFormatter):
+    """A line for each command: room for the longest name, and none for the word COMMAND."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog)
+        self._action_max_length = 14  # argparse forgets to count the indent of commands
+
+    def _format_action(self, action: argparse.Action) -> str:
+        text = super()._format_action(action)
+        return text if action.nargs != argparse.PARSER else text.split("\n", 1)[1]
 
 
 def _command(commands, name: str, summary: str, example: str) -> argparse.ArgumentParser:
@@ -43,6 +55,11 @@ MOST_THREADS = max(64, 4 * (os.cpu_count() or 1))  # far more than help, far few
 REFERENCES = Path("tests/references")
 GALLERY = Path("reports/gallery")
 CASE = "case file (.yaml) or name in the suite; NAME@seed2 is another mesh"
+
+
+def _init(commands) -> None:
+    one = _command(commands, "init", "start a project of your own in a new folder", "my_rock")
+    one.add_argument("name", type=_path, metavar="NAME", help="folder to make; must not be there")
 
 
 def _check(commands) -> None:
@@ -79,6 +96,21 @@ def _run(commands) -> None:
     _source_of_case(one)
 
 
+def _study(commands) -> None:
+    one = _command(
+        commands,
+        "study",
+        "run a study: its cases, a table, a figure",
+        "study.yaml --out out --cores 4",
+    )
+    one.add_argument("file", type=_path, metavar="FILE", help="study file (.yaml)")
+    one.add_argument(
+        "--out", type=_path, metavar="DIR", help="results folder; none: check and list the runs"
+    )
+    one.add_argument("--cores", type=_threads, metavar="N", help="runs at a time, default all")
+    one.add_argument("--quiet", action="store_true", help="print errors only")
+
+
 def _plot(commands) -> None:
     one = _command(
         commands,
@@ -88,7 +120,7 @@ def _plot(commands) -> None:
     )
     one.add_argument("kind", metavar="KIND", help="what to draw; an unknown word lists all")
     one.add_argument("input", nargs="*", type=Path, metavar="INPUT", help="results folder or file")
-    one.add_argument("--out", type=_path, required=True, metavar="FILE", help=".svg .png .pdf .csv")
+    one.add_argument("--out", type=_path, required=True, metavar="FILE", help=".svg .png .pdf .csv .parquet")
     one.add_argument("--data", type=Path, metavar="DIR", help="measured data, default data/")
 
 

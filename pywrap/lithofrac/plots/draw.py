@@ -1,4 +1,4 @@
-"""What `lithofrac plot KIND INPUT... --out FILE` does: a figure, or its numbers as CSV."""
+"""What `lithofrac plot KIND INPUT... --out FILE` does: a figure, or its numbers in a table."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +17,7 @@ from lithofrac.analysis import (
 )
 from lithofrac.analysis.claims import claims
 from lithofrac.analysis.punch import punch as punch_table
+from lithofrac.analysis.study import study_table
 from lithofrac.analysis.variants import variants as variants_table
 from lithofrac.data import DataError
 from lithofrac.plots import (
@@ -34,9 +35,11 @@ from lithofrac.plots import (
     single_element,
     size_effect,
     stiffness,
+    study,
     style,
     variants,
 )
+from lithofrac.results.files import write_table, write_whole
 
 FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "single_element": single_element.figure,
@@ -57,6 +60,7 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "size_effect": size_effect.figure,
     "punch_patterns": punch_patterns.figure,
     "variants": variants.figure,
+    "study": study.figure,
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "single_element": tables.single_element,
@@ -78,18 +82,20 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "variants": variants_table,
     "results": results.verdicts,
     "claims": claims,
+    "study": study_table,
 }
 FORMATS = (".svg", ".png", ".pdf")
+NUMBERS = (".csv", ".parquet")
 
 
 def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> None:
-    """Draw a figure, or write a table when `out` ends in `.csv`.
+    """Draw a figure, or write a table when `out` ends in `.csv` or `.parquet`.
 
     Parameters
     ----------
     kind : a key of `FIGURES` or `TABLES`
     inputs : results folders or files in them, bench curves, or a material; what the kind needs
-    out : file to write, .svg, .png, .pdf or .csv
+    out : file to write, .svg, .png, .pdf, .csv or .parquet
     data : the folder `data/`, by default that of the working folder
 
     Raises
@@ -98,10 +104,10 @@ def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> 
         When the kind or format is unknown, an input is missing, or a data file is wrong.
     """
     data = Path("data") if data is None else data
-    known = TABLES if out.suffix == ".csv" else FIGURES
-    if out.suffix not in (*FORMATS, ".csv"):
+    known = TABLES if out.suffix in NUMBERS else FIGURES
+    if out.suffix not in (*FORMATS, *NUMBERS):
         raise DataError(
-            f"{out}: format {out.suffix!r}, expected one of {', '.join((*FORMATS, '.csv'))}"
+            f"{out}: format {out.suffix!r}, expected one of {', '.join((*FORMATS, *NUMBERS))}"
         )
     if kind not in known:
         what, suffixes, other = "figure", ".csv", TABLES
@@ -127,6 +133,7 @@ def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> 
         style.save(made, out)
         return
     out.parent.mkdir(parents=True, exist_ok=True)
-    part = out.with_name(f".{out.name}.part")
-    made.to_csv(part, index=False)
-    part.replace(out)
+    if out.suffix == ".parquet":
+        write_table(out, made)
+    else:
+        write_whole(out, lambda part: made.to_csv(part, index=False))
