@@ -120,7 +120,9 @@ def _plot(commands) -> None:
     )
     one.add_argument("kind", metavar="KIND", help="what to draw; an unknown word lists all")
     one.add_argument("input", nargs="*", type=Path, metavar="INPUT", help="results folder or file")
-    one.add_argument("--out", type=_path, required=True, metavar="FILE", help=".svg .png .pdf .csv .parquet")
+    one.add_argument(
+        "--out", type=_path, required=True, metavar="FILE", help=".svg .png .pdf .csv .parquet"
+    )
     one.add_argument("--data", type=Path, metavar="DIR", help="measured data, default data/")
 
 

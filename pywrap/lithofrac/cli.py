@@ -155,7 +155,11 @@ def study(options: Namespace) -> int:
         print(f"{len(texts)} runs are right; --out DIR runs them")
         return GOOD
     cores = options.cores or len(os.sched_getaffinity(0))
-    start(options.file, texts, options.out, cores, options.quiet)
+    before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
+    try:
+        start(options.file, texts, options.out, cores, options.quiet)
+    finally:
+        signal.signal(signal.SIGTERM, before)
     if not options.quiet:
         print(f"{len(texts)} runs; {options.out}/table.parquet, {options.out}/figure.svg")
     return GOOD

@@ -7,10 +7,15 @@ and calls the command line again, run by run. Everything stands in the results f
 
 from __future__ import annotations
 
+import contextlib
+import fcntl
 import hashlib
 import json
+import os
+import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 from lithofrac.analysis.study import check_quantities
@@ -22,6 +27,7 @@ from lithofrac.results.files import write_whole
 
 HERE = Path(__file__).parent
 RULES = HERE / "_rules" / "study.smk"
+GRACE = 5.0  # [s] for what is stopped to end by itself
 
 
 def checked(file: Path) -> tuple[Study, dict[str, str]]:
@@ -34,16 +40,22 @@ def checked(file: Path) -> tuple[Study, dict[str, str]]:
     """
     study = load_study(file)
     check_quantities(study, file)
-    wrong: list[str] = []
     texts = {}
+    wrong: dict[str, list[str]] = {}  # sentence -> runs
     for name in study.names:
         try:
             texts[name] = text_of(study.case(name))
         except ConfigError as error:
-            wrong += str(error).splitlines()
+            for line in str(error).splitlines():
+                wrong.setdefault(line, []).append(name)
     if wrong:
-        raise ConfigError("\n".join(dict.fromkeys(wrong)))
+        raise ConfigError("\n".join(f"{line} ({_runs(names)})" for line, names in wrong.items()))
     return study, texts
+
+
+def _runs(names: list[str]) -> str:
+    more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+    return f"run {names[0]}{more}"
 
 
 def start(file: Path, texts: dict[str, str], out: Path, cores: int, quiet: bool) -> None:
@@ -66,20 +78,25 @@ def start(file: Path, texts: dict[str, str], out: Path, cores: int, quiet: bool)
     """
     if out.resolve() == file.resolve().parent:
         raise ConfigError(f"--out {out}: holds the study file itself, expected another folder")
-    jobs = {"cases": list(texts), "core": _mark_of_core()}
     try:
         for folder in (out, out / "cases", out / "log"):
             folder.mkdir(parents=True, exist_ok=True)
-        for name, text in texts.items():
-            _write_if_new(out / "cases" / f"{name}.yaml", text)
-        _write_if_new(out / "study.yaml", file.read_text(encoding="utf-8"))
-        _write_if_new(out / "jobs.json", json.dumps(jobs, indent=2) + "\n")
+        with _alone_in(out):
+            _write_inputs(file, texts, out)
+            if _snakemake(out, cores, quiet):
+                raise CoreError(_failures(out, list(texts)))
     except OSError as error:
         raise ConfigError(f"--out {out}: cannot be written ({error.strerror})") from None
-    for log in (out / "log").glob("*.txt"):
-        log.unlink()  # what stands there after this call was said during it
-    if _snakemake(out, cores, quiet):
-        raise CoreError(_failures(out, [*texts, "collect"]))
+
+
+def _write_inputs(file: Path, texts: dict[str, str], out: Path) -> None:
+    """What the rules read: the study, its cases and a list of them."""
+    jobs = {"cases": list(texts), "core": _mark_of_core()}
+    for name, text in texts.items():
+        _write_if_new(out / "cases" / f"{name}.yaml", text)
+        _forget_unfinished(out / "runs" / name / "summary.json")
+    _write_if_new(out / "study.yaml", file.read_text(encoding="utf-8"))
+    _write_if_new(out / "jobs.json", json.dumps(jobs, indent=2) + "\n")
 
 
 def _snakemake(out: Path, cores: int, quiet: bool) -> int:
@@ -87,36 +104,63 @@ def _snakemake(out: Path, cores: int, quiet: bool) -> int:
     command = [
         *(sys.executable, "-P", "-m", "snakemake", "--snakefile", str(RULES)),
         *("--directory", str(out), "--cores", str(cores)),
-        *("--keep-going", "--rerun-incomplete", "--nocolor"),
+        *("--keep-going", "--rerun-incomplete", "--nocolor", "--nolock"),
     ]
     with (
-        open(out / "log" / "snakemake.txt", "w") as log,
+        open(out / "log" / "snakemake.txt", "w", buffering=1) as log,
         subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+            command,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,  # so that a signal reaches it and its runs once, from here
         ) as process,
     ):
         try:
             for line in process.stdout:
                 log.write(line)
-                if not quiet and line.startswith(("Job ", "[Errno")):
+                if not quiet and line.startswith("Job "):
                     print(line.split(":", 1)[-1].strip(), file=sys.stderr, flush=True)
             return process.wait()
-        except KeyboardInterrupt:  # Snakemake has it too, and stops its runs with checkpoints
-            process.wait()
+        except KeyboardInterrupt:
+            os.killpg(process.pid, signal.SIGTERM)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(GRACE)
+            with contextlib.suppress(ProcessLookupError):  # Snakemake may wait for a dead helper
+                os.killpg(process.pid, signal.SIGKILL)
             raise
 
 
-def _failures(out: Path, jobs: list[str]) -> str:
+@contextlib.contextmanager
+def _alone_in(out: Path) -> Iterator[None]:
+    """Refuse to work in a folder where another study does; a killed one leaves no lock."""
+    with open(out / "log" / "lock", "w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise ConfigError(
+                f"--out {out}: another study is at work there, expected a folder of its own"
+            ) from None
+        yield
+
+
+def _forget_unfinished(summary: Path) -> None:
+    """Remove the summary of a run that was stopped, which Snakemake would take for a result."""
+    if summary.exists() and json.loads(summary.read_text())["status"] != "completed":
+        summary.unlink()
+
+
+def _failures(out: Path, names: list[str]) -> str:
     """One sentence for each job that failed, by the last line of its log."""
+    made = {name: out / "runs" / name / "summary.json" for name in names}
+    lacking = [name for name, summary in made.items() if not summary.exists()] or ["collect"]
     said = []
-    for job in jobs:
-        made = out / ("figure.svg" if job == "collect" else f"runs/{job}/summary.json")
+    for job in lacking:
         log = out / "log" / f"{job}.txt"
-        if made.exists() or not log.exists():
-            continue
-        lines = [line for line in log.read_text().splitlines() if line.strip()]
-        reason = lines[-1].removeprefix("lithofrac: ") if lines else "no word in its log"
-        said.append(f"{job}: {reason} (all of it in {log})")
+        lines = log.read_text().split("\n") if log.exists() else []
+        words = [line.removeprefix("lithofrac: ") for line in lines if line.strip()]
+        if words:
+            said.append(f"{job}: {words[-1]} (all of it in {log})")
     return "\n".join(said or [f"the pipeline failed; its words are in {out}/log/snakemake.txt"])
 
 

@@ -62,7 +62,9 @@ class Study(Section):
         if (self.grid is None) == (self.cases is None):
             raise ValueError("grid, cases: expected one of the two")
         if self.cases is not None and self.name is not None:
-            raise ValueError(f"name = {self.name}: expected no name beside cases, which have theirs")
+            raise ValueError(
+                f"name = {self.name}: expected no name beside cases, which have theirs"
+            )
         own = self._combined() if self.grid is not None else self.cases
         self._overrides.update({name: _leaves(nested(keys)) for name, keys in own.items()})
         if self.realisations * len(own) > MOST:

@@ -11,6 +11,7 @@ from lithofrac.analysis.study import study_of, study_table
 from lithofrac.data import DataError
 from lithofrac.plots import style
 
+MOST_TICKS = 8
 MARKERS = "osD^vPX"
 COLOURS = (style.BLUE, style.RED, style.GREEN, style.PURPLE, style.ORANGE, style.SKY, style.BLACK)
 # End of a key -> unit as it is printed; the longest end that fits counts.
@@ -44,21 +45,50 @@ def figure(inputs: list[Path], data: Path) -> Figure:
         )
     drawn, axes = style.new_figure(height=3.8)
     panel = axes[0, 0]
+    name, unit, words = _shared(asked.y)
     groups = list(table.groupby(asked.series, sort=True)) if asked.series else [(None, table)]
     lines = [(y, value, rows) for y in asked.y for value, rows in groups]
     for i, (y, value, rows) in enumerate(lines):
-        words = [words_of(y)[0]] if len(asked.y) > 1 else []
-        words += [_setting(asked.series, value)] if asked.series else []
-        _draw(panel, rows, asked.x, y, i, ", ".join(words))
-    units = dict.fromkeys(words_of(y)[1] for y in asked.y)
-    name = words_of(asked.y[0])[0] if len(asked.y) == 1 else "value"
-    unit = next(iter(units)) if len(units) == 1 else ""
+        setting = _setting(asked.series, value) if asked.series else ""
+        _draw(panel, rows, asked.x, y, i, ", ".join(filter(None, (words[y], setting))))
     panel.set(xlabel=_label(*words_of(asked.x)), ylabel=_label(name, unit), title=study.title)
-    panel.set_xscale(asked.x_scale)
-    panel.set_ylim(*((0, None) if table[asked.y].min(axis=None) >= 0.0 else (None, None)))
-    if any(line.get_label()[0] != "_" for line in panel.get_lines()):
+    lowest, largest = table[asked.y].min(axis=None), table[asked.y].max(axis=None)
+    if lowest >= 0.0 and largest > 0.0:
+        panel.set_ylim(0.0, 1.05 * largest)
+    if asked.x_scale == "log":
+        _log_axis(panel, file, table, asked.x)
+    if len(lines) > 1:
         drawn.legend(loc="outside lower center", ncols=min(3, len(lines)))
     return drawn
+
+
+def _log_axis(panel: Axes, file: Path, table: pd.DataFrame, x: str) -> None:
+    """A logarithmic axis with a tick at each value, or at powers of ten where these are many."""
+    if not pd.api.types.is_numeric_dtype(table[x]) or not (table[x].dropna() > 0).all():
+        raise DataError(f"{file}: plot.x_scale = log: expected {x} to be numbers above 0")
+    panel.set_xscale("log")
+    values = sorted(table[x].dropna().unique())
+    if len(values) <= MOST_TICKS:
+        panel.set_xticks(values, labels=[f"{value:g}" for value in values])
+        panel.set_xticks([], minor=True)
+
+
+def _shared(quantities: list[str]) -> tuple[str, str, dict[str, str]]:
+    """Name and unit that quantities share, and for each what is left to tell it apart."""
+    named = {y: words_of(y) for y in quantities}
+    units = {unit for _, unit in named.values()}
+    unit = units.pop() if len(units) == 1 else ""
+    if len(named) == 1:
+        return named[quantities[0]][0], unit, {quantities[0]: ""}
+    plain = {words.split(" (")[0] for words, _ in named.values()}
+    if len(plain) > 1:
+        return (
+            "",
+            unit,
+            {y: words if unit else _label(*named[y]) for y, (words, _) in named.items()},
+        )
+    name = plain.pop()
+    return name, unit, {y: words.removeprefix(name).strip(" ()") for y, (words, _) in named.items()}
 
 
 def _draw(panel: Axes, rows: pd.DataFrame, x: str, y: str, number: int, words: str) -> None:
@@ -72,8 +102,7 @@ def _draw(panel: Axes, rows: pd.DataFrame, x: str, y: str, number: int, words: s
     means = means.sort_index() if pd.api.types.is_numeric_dtype(means.index) else means
     if len(means) < len(rows):
         panel.plot(rows[x], rows[y], marker, color=colour, markerfacecolor="none", alpha=0.6)
-    label = words or "_one"
-    panel.plot(means.index, means, f"{marker}-", color=colour, label=label)
+    panel.plot(means.index, means, f"{marker}-", color=colour, label=words)
 
 
 def words_of(key: str) -> tuple[str, str]:
@@ -94,4 +123,4 @@ def _setting(key: str, value: object) -> str:
 
 
 def _label(words: str, unit: str) -> str:
-    return f"{words} [{unit}]" if unit else words
+    return f"{words} [{unit}]".strip() if unit else words
