@@ -316,7 +316,15 @@ def reproduce(extra):
     setup()
     snakemake = [BIN / "python", "-m", "snakemake"]
     with stage("suite"):
-        need(*snakemake, "--cores", "all", "--rerun-incomplete", "--show-failed-logs", *extra)
+        need(
+            *snakemake,
+            "--cores",
+            "all",
+            "--keep-going",
+            "--rerun-incomplete",
+            "--show-failed-logs",
+            *extra,
+        )
     if {"-n", "--dry-run", "--dryrun"} & set(extra):
         return
     with stage("report"):

@@ -166,10 +166,10 @@ def test_failed_build_is_not_taken_for_a_finished_one(tasks, monkeypatch):
 @pytest.mark.no_core
 def test_suite_and_further_arguments_reach_snakemake(tasks, calls, monkeypatch):
     monkeypatch.setattr(tasks, "setup", lambda: None)
-    tasks.main(["reproduce", "--suite", "configs/suite_quick.yaml", "--keep-going"])
+    tasks.main(["reproduce", "--suite", "configs/suite_quick.yaml", "--quiet"])
     suite, report = calls
     for command in (suite, report):
-        assert command[-3:] == ["--config", "suite=configs/suite_quick.yaml", "--keep-going"]
+        assert command[-3:] == ["--config", "suite=configs/suite_quick.yaml", "--quiet"]
     assert suite[3:5] == ["--cores", "all"]
     assert report[3:5] == ["--report", "out/report.html"]
 

@@ -102,7 +102,8 @@ def _gauges(scene: Hole) -> dict[str, tuple[float, float]]:
 
     (0, R) itself is a node: which of its elements is nearest would be chance, so the gauge of the
     crown lies half an element above it. The primary crack opens between the elements there and
-    relieves one of them before its strength is used up: both sides are recorded as well.
+    relieves one of them before its strength is used up: both sides are recorded as well. What of
+    the fan a small block has no room for is left out.
     """
     radius, size = scene.radius, scene.wall_size
     fan = [
@@ -117,5 +118,9 @@ def _gauges(scene: Hole) -> dict[str, tuple[float, float]]:
         "crown_left": (-0.5 * size, radius + 0.25 * size),
         "sidewall_right": (radius, 0.0),
         "sidewall_left": (-radius, 0.0),
-        **{f"remote_{i:02d}": place for i, place in enumerate(fan, start=1)},
+        **{
+            f"remote_{i:02d}": place
+            for i, place in enumerate(fan, start=1)
+            if max(map(abs, place)) < 0.5 * scene.height
+        },
     }

@@ -21,7 +21,7 @@ SCENES = [
     "punch_gf60",
     "brazilian",
     "hole_r06.4",
-    "hole_block150_r16.3",
+    "hole_block150_r31.0",
     "kirsch",
     "bar_wave",
 ]
@@ -36,7 +36,7 @@ AREA_mm2 = {
     # without the segments beyond the flats of 6 degrees, with the platens
     "brazilian": 20**2 * (np.pi - ARC + np.sin(ARC)) + 2 * (40 * np.sin(ARC / 2) + 6) * 5,
     "hole_r06.4": 6.4**2 * (8 * 4 - np.pi / 2 + 8.2),
-    "hole_block150_r16.3": 150 * 75 - np.pi * 16.3**2 / 2 + 155 * 25,
+    "hole_block150_r31.0": 150 * 75 - np.pi * 31**2 / 2 + 155 * 25,
     "kirsch": 100**2 - np.pi * 25**2 / 4,
     "bar_wave": 5 * 100,
 }
