@@ -10,36 +10,51 @@ import lithofrac
 from lithofrac._build import NATIVE
 
 
+class _Screen(argparse.RawDescriptionHelpFormatter):
+    """Lists commands one a line, without a line for their argument: help that fits a screen."""
+
+    def _format_action(self, action: argparse.Action) -> str:
+        if action.nargs != argparse.PARSER:
+            return super()._format_action(action)
+        self._dedent()  # the width of the column leaves no room for two levels
+        _, commands = super()._format_action(action).split("\n", 1)
+        self._indent()
+        return commands
+
+
 def parser() -> argparse.ArgumentParser:
     """The whole command line; `command` of what it parses is the name of the command."""
     found = argparse.ArgumentParser(
         prog="lithofrac",
+        usage="lithofrac [--help | --version] COMMAND ...",
         description="Rock fracture benchmarks: continuum with a crack band, explicit in time.",
         epilog="example: lithofrac run sandstone_triaxial_p10 --out out/p10\n"
-        "exit codes: 0 good, 2 bad input, 3 numerical failure, 4 moved, 130 interrupted",
-        formatter_class=_OneScreen,
+        "`lithofrac COMMAND --help` shows the options of a command and an example.\n"
+        "exit: 0 good, 2 bad input, 3 numerical failure, 4 numbers moved, 130 interrupted",
+        formatter_class=_Screen,
+        add_help=False,
     )
+    found.add_argument("-h", "--help", action="help", help=argparse.SUPPRESS)
     version = f"lithofrac {lithofrac.__version__}, native: {str(NATIVE).lower()}"
-    found.add_argument("--version", action="version", version=version)
+    found.add_argument("--version", action="version", version=version, help=argparse.SUPPRESS)
     commands = found.add_subparsers(
-        title="commands", metavar="COMMAND", dest="command", required=True
+        title="commands", metavar="COMMAND", dest="command", required=True, prog="lithofrac"
     )
-    for add in (_init, _check, _mesh, _run, _study, _plot, _report, _gallery, _point, _compare):
+    for add in (
+        _init,
+        _check,
+        _mesh,
+        _run,
+        _study,
+        _plot,
+        _report,
+        _gallery,
+        _point,
+        _compare,
+        _references,
+    ):
         add(commands)
-    _references(commands)
     return found
-
-
-class _OneScreen(argparse.RawDescriptionHelpFormatter):
-    """A line for each command: room for the longest name, and none for the word COMMAND."""
-
-    def __init__(self, prog: str) -> None:
-        super().__init__(prog)
-        self._action_max_length = 14  # argparse forgets to count the indent of commands
-
-    def _format_action(self, action: argparse.Action) -> str:
-        text = super()._format_action(action)
-        return text if action.nargs != argparse.PARSER else text.split("\n", 1)[1]
 
 
 def _command(commands, name: str, summary: str, example: str) -> argparse.ArgumentParser:

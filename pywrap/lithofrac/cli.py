@@ -6,7 +6,6 @@ modules are imported by the command that needs them.
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 import sys
@@ -154,10 +153,9 @@ def study(options: Namespace) -> int:
             print(f"{name}: {own}" if own else f"{name}: as the base")
         print(f"{len(texts)} runs are right; --out DIR runs them")
         return GOOD
-    cores = options.cores or len(os.sched_getaffinity(0))
     before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
     try:
-        start(options.file, texts, options.out, cores, options.quiet)
+        start(options.file, texts, options.out, options.cores, options.quiet)
     finally:
         signal.signal(signal.SIGTERM, before)
     if not options.quiet:

@@ -58,7 +58,7 @@ def _runs(names: list[str]) -> str:
     return f"run {names[0]}{more}"
 
 
-def start(file: Path, texts: dict[str, str], out: Path, cores: int, quiet: bool) -> None:
+def start(file: Path, texts: dict[str, str], out: Path, cores: int | None, quiet: bool) -> None:
     """Run what is missing or has changed, and write the table and the figure.
 
     Parameters
@@ -66,7 +66,7 @@ def start(file: Path, texts: dict[str, str], out: Path, cores: int, quiet: bool)
     file : the study file
     texts : case files by name, of `checked`
     out : results folder; made if it is not there
-    cores : runs at a time
+    cores : runs at a time, as many as there are cores where it is None
     quiet : print nothing unless something fails
 
     Raises
@@ -99,11 +99,11 @@ def _write_inputs(file: Path, texts: dict[str, str], out: Path) -> None:
     _write_if_new(out / "jobs.json", json.dumps(jobs, indent=2) + "\n")
 
 
-def _snakemake(out: Path, cores: int, quiet: bool) -> int:
+def _snakemake(out: Path, cores: int | None, quiet: bool) -> int:
     """Exit code of the pipeline; its words go to log/snakemake.txt."""
     command = [
         *(sys.executable, "-P", "-m", "snakemake", "--snakefile", str(RULES)),
-        *("--directory", str(out), "--cores", str(cores)),
+        *("--directory", str(out), "--cores", str(cores or "all")),
         *("--keep-going", "--rerun-incomplete", "--nocolor", "--nolock"),
     ]
     with (
