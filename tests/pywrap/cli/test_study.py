@@ -18,6 +18,8 @@ import pytest
 from lithofrac.analysis.study import LEDGER, SUMMARY
 from lithofrac.cli import main
 
+pytestmark = pytest.mark.no_core  # it runs cases, but what is tested is not the build of the core
+
 CASE = Path("configs/cases/single_element.yaml").resolve()
 STUDY = f"""\
 title: Rate
@@ -94,7 +96,6 @@ def test_only_what_changed_is_run(project):
     assert len(ran(lithofrac(project, *command))) == 2
 
 
-@pytest.mark.no_core
 def test_init_refuses_to_overwrite(tmp_path, capsys):
     folder = tmp_path / "mine"
     folder.mkdir()
@@ -112,7 +113,6 @@ def study(tmp_path):
     return path
 
 
-@pytest.mark.no_core
 def test_without_a_folder_the_runs_are_listed(study, capsys):
     assert main(["study", str(study)]) == 0
     assert capsys.readouterr().out == (
@@ -123,7 +123,6 @@ def test_without_a_folder_the_runs_are_listed(study, capsys):
     assert list(study.parent.iterdir()) == [study]
 
 
-@pytest.mark.no_core
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
@@ -157,7 +156,6 @@ def test_a_wrong_study_starts_nothing(study, capsys, old, new, message):
     assert list(study.parent.iterdir()) == [study]
 
 
-@pytest.mark.no_core
 def test_the_folder_of_the_study_is_no_results_folder(study, capsys):
     assert main(["study", str(study), "--out", str(study.parent)]) == 2
     assert capsys.readouterr().err == (
@@ -166,7 +164,6 @@ def test_the_folder_of_the_study_is_no_results_folder(study, capsys):
     assert list(study.parent.iterdir()) == [study]
 
 
-@pytest.mark.no_core
 def test_two_studies_do_not_share_a_folder(study, capsys):
     out = study.parent / "out"
     (out / "log").mkdir(parents=True)
