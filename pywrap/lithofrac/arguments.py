@@ -41,9 +41,11 @@ def parser() -> argparse.ArgumentParser:
         title="commands", metavar="COMMAND", dest="command", required=True, prog="lithofrac"
     )
     for add in (
+        _init,
         _check,
         _mesh,
         _run,
+        _study,
         _show,
         _plot,
         _report,
@@ -70,6 +72,11 @@ MOST_THREADS = max(64, 4 * (os.cpu_count() or 1))  # far more than help, far few
 REFERENCES = Path("tests/references")
 GALLERY = Path("reports/gallery")
 CASE = "case file (.yaml) or name in the suite; NAME@seed2 is another mesh"
+
+
+def _init(commands) -> None:
+    one = _command(commands, "init", "start a project of your own in a new folder", "my_rock")
+    one.add_argument("name", type=_path, metavar="NAME", help="folder to make; must not be there")
 
 
 def _check(commands) -> None:
@@ -111,6 +118,21 @@ def _show(commands) -> None:
     one.add_argument("run", nargs="+", type=Path, metavar="DIR", help="results folder")
 
 
+def _study(commands) -> None:
+    one = _command(
+        commands,
+        "study",
+        "run a study: its cases, a table, a figure",
+        "study.yaml --out out --cores 4",
+    )
+    one.add_argument("file", type=_path, metavar="FILE", help="study file (.yaml)")
+    one.add_argument(
+        "--out", type=_path, metavar="DIR", help="results folder; none: check and list the runs"
+    )
+    one.add_argument("--cores", type=_threads, metavar="N", help="runs at a time, default all")
+    one.add_argument("--quiet", action="store_true", help="print errors only")
+
+
 def _plot(commands) -> None:
     one = _command(
         commands,
@@ -121,7 +143,7 @@ def _plot(commands) -> None:
     one.add_argument("kind", metavar="KIND", help="what to draw; an unknown word lists all")
     one.add_argument("input", nargs="*", type=Path, metavar="INPUT", help="results folder or file")
     one.add_argument(
-        "--out", type=_path, required=True, metavar="FILE", help=".svg .png .pdf .csv .gif"
+        "--out", type=_path, required=True, metavar="FILE", help=".svg .png .pdf .csv .parquet .gif"
     )
     one.add_argument("--data", type=Path, metavar="DIR", help="measured data, default data/")
 

@@ -66,6 +66,15 @@ def _exit_code(error: Exception) -> int | None:
     return NUMERICAL_FAILURE if names & {"CoreError", "MeshError"} else None
 
 
+def init(options: Namespace) -> int:
+    """Start a project in a new folder."""
+    from lithofrac.project import make
+
+    made = ", ".join(path.name for path in make(options.name))
+    print(f"{options.name}: {made}; README.md says how to go on")
+    return GOOD
+
+
 def check(options: Namespace) -> int:
     """Say what a run would use, and whether its input is right."""
     from lithofrac.config import load_suite
@@ -133,6 +142,27 @@ def show(options: Namespace) -> int:
     from lithofrac.analysis.overview import overview
 
     print(overview(_present(options.run)))
+    return GOOD
+
+
+def study(options: Namespace) -> int:
+    """Run what a study lacks, and write its table and its figure."""
+    from lithofrac.study import checked, start
+
+    asked, texts = checked(options.file)
+    if options.out is None:
+        for name in asked.names:
+            own = ", ".join(f"{key} = {value}" for key, value in asked.overrides(name).items())
+            print(f"{name}: {own}" if own else f"{name}: as the base")
+        print(f"{len(texts)} runs are right; --out DIR runs them")
+        return GOOD
+    before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
+    try:
+        start(options.file, texts, options.out, options.cores, options.quiet)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    if not options.quiet:
+        print(f"{len(texts)} runs; {options.out}/table.parquet, {options.out}/figure.svg")
     return GOOD
 
 
@@ -235,9 +265,11 @@ def references(options: Namespace) -> int:
 
 
 COMMANDS = {
+    "init": init,
     "check": check,
     "mesh": mesh,
     "run": run,
+    "study": study,
     "show": show,
     "plot": plot,
     "report": report,

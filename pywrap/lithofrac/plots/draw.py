@@ -1,4 +1,4 @@
-"""What `lithofrac plot KIND INPUT... --out FILE` does: a figure, its numbers as CSV, or a GIF."""
+"""What `lithofrac plot KIND INPUT... --out FILE` does: a figure, its numbers, or a GIF."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +17,7 @@ from lithofrac.analysis import (
 )
 from lithofrac.analysis.claims import claims
 from lithofrac.analysis.punch import punch as punch_table
+from lithofrac.analysis.study import study_table
 from lithofrac.analysis.variants import variants as variants_table
 from lithofrac.analysis.zigong_prediction import zigong_prediction, zigong_prediction_error
 from lithofrac.data import DataError
@@ -39,9 +40,11 @@ from lithofrac.plots import (
     single_element,
     size_effect,
     stiffness,
+    study,
     style,
     variants,
 )
+from lithofrac.results.files import write_table, write_whole
 
 FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "single_element": single_element.figure,
@@ -65,6 +68,7 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "size_effect": size_effect.figure,
     "punch_patterns": punch_patterns.figure,
     "variants": variants.figure,
+    "study": study.figure,
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "single_element": tables.single_element,
@@ -88,19 +92,21 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "variants": variants_table,
     "results": results.verdicts,
     "claims": claims,
+    "study": study_table,
 }
 MOVIES: dict[str, Callable[[list[Path], Path, Path], None]] = {"animation": animation.write}
 FORMATS = (".svg", ".png", ".pdf")
+NUMBERS = (".csv", ".parquet")
 
 
 def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> None:
-    """Draw a figure, write a table when `out` ends in `.csv`, an animation when in `.gif`.
+    """Draw a figure, write a table when `out` ends in `.csv` or `.parquet`, an animation in `.gif`.
 
     Parameters
     ----------
     kind : a key of `FIGURES`, `TABLES` or `MOVIES`
     inputs : results folders or files in them, bench curves, or a material; what the kind needs
-    out : file to write, .svg, .png, .pdf, .csv or .gif
+    out : file to write, .svg, .png, .pdf, .csv, .parquet or .gif
     data : the folder `data/`, by default that of the working folder
 
     Raises
@@ -127,9 +133,10 @@ def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> 
     if known is not TABLES:
         return
     out.parent.mkdir(parents=True, exist_ok=True)
-    part = out.with_name(f".{out.name}.part")
-    made.to_csv(part, index=False)
-    part.replace(out)
+    if out.suffix == ".parquet":
+        write_table(out, made)
+    else:
+        write_whole(out, lambda part: made.to_csv(part, index=False))
 
 
 def _known(kind: str, out: Path) -> dict[str, Callable]:
@@ -140,7 +147,7 @@ def _known(kind: str, out: Path) -> dict[str, Callable]:
     DataError
         When it is not, or the format is none.
     """
-    groups = {"figure": (FORMATS, FIGURES), "table": ((".csv",), TABLES)}
+    groups = {"figure": (FORMATS, FIGURES), "table": (NUMBERS, TABLES)}
     groups["animation"] = ((".gif",), MOVIES)
     for what, (suffixes, known) in groups.items():
         if out.suffix not in suffixes:

@@ -31,6 +31,7 @@ NOT_WATCHED = {
     **dict.fromkeys(("size_effect", "hole_fits", "hole_checks"), "made of hole_initiation"),
     "claims": "verdicts on runs that are watched",
     "variants": "differences between runs that are watched",
+    "study": "of the files of users",
     "run_time": "of the machine; the rest stands in summary.json",
     "results": "words made of the other tables",
 }
