@@ -7,7 +7,6 @@ modules are imported by the command that needs them.
 from __future__ import annotations
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -15,15 +14,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithofrac.arguments import parser
+from lithofrac.intake import accepted, case_of, find_checkpoint, made_of, mesh_of, prepare
 
 if TYPE_CHECKING:
     from argparse import Namespace
 
     from lithofrac.config import Case
-    from lithofrac.problem import Mesh, Problem
 
 GOOD, BAD_INPUT, NUMERICAL_FAILURE, MOVED, INTERRUPTED = 0, 2, 3, 4, 130
-MOST_STEPS = 1_000_000_000
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -82,17 +80,17 @@ def check(options: Namespace) -> int:
 
     names = options.case or list(load_suite(options.suite or default_suite()).names)
     if len(names) == 1:
-        _print_plan(names[0], _case(names[0], options))
+        _print_plan(names[0], case_of(names[0], options))
         return GOOD
     for name in names:
-        print(f"{name}: {_case(name, options).title}")
+        print(f"{name}: {case_of(name, options).title}")
     print(f"{len(names)} cases are right")
     return GOOD
 
 
 def mesh(options: Namespace) -> int:
     """Mesh a case and save it."""
-    made = _made(options.case, _case(options.case, options), options.seed)
+    made = made_of(options.case, case_of(options.case, options), options.seed)
     options.out.parent.mkdir(parents=True, exist_ok=True)
     with open(options.out, "wb") as file:  # a handle, so that no suffix is added
         made.save(file)
@@ -105,13 +103,13 @@ def run(options: Namespace) -> int:
     from lithofrac.progress import Progress
     from lithofrac.run import simulate
 
-    case = _case(options.case, options)
-    made = _mesh_of(case, options)
-    problem, _ = _accepted(options.case, case, made)
+    case = case_of(options.case, options)
+    made = mesh_of(case, options)
+    problem, _ = accepted(options.case, case, made)
     if options.resume:
-        _find_checkpoint(options.out, problem)
+        find_checkpoint(options.out, problem)
     name = Path(options.case).stem if options.case.endswith((".yaml", ".yml")) else options.case
-    _prepare(options, case, made)
+    prepare(options, case, made)
     progress = Progress(name)
     before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
     try:
@@ -297,106 +295,11 @@ def _present(paths: list[Path]) -> list[Path]:
     return paths
 
 
-def _case(name: str, options: Namespace) -> Case:
-    from lithofrac.config.setting import settings
-    from lithofrac.config.suite import find_case
-
-    return find_case(name, options.suite, settings(options.set))
-
-
-def _mesh_of(case: Case, options: Namespace) -> Mesh:
-    """Mesh of the folder that is resumed, of the file that is named, or a new one."""
-    from lithofrac.config import ConfigError
-    from lithofrac.problem import Mesh
-
-    path = options.out / "mesh.npz" if options.resume else options.mesh
-    if path is None:
-        return _made(options.case, case)
-    if options.resume and not path.exists():
-        raise ConfigError(f"{path}: no such file, there is no run to resume in {options.out}")
-    try:
-        return Mesh.load(path)
-    except (ValueError, KeyError, EOFError) as error:
-        raise ConfigError(f"{path}: expected a mesh of `lithofrac mesh` ({error})") from None
-
-
-def _made(name: str, case: Case, seed: int | None = None) -> Mesh:
-    """A new mesh of a case."""
-    from lithofrac.config import ConfigError
-    from lithofrac.scenes import make_mesh
-
-    try:
-        return make_mesh(case, seed)
-    except ConfigError as error:
-        raise ConfigError(f"{name}: {error}") from None
-
-
-def _accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
-    """Problem of a case and its plan, once scene and core have taken both; nothing is written."""
-    from lithofrac.config import ConfigError
-    from lithofrac.errors import CoreError
-    from lithofrac.run import plan
-    from lithofrac.scenes import make_problem
-
-    try:
-        problem = make_problem(case, mesh)
-        expected = plan(problem)
-    except (ConfigError, CoreError) as error:
-        lines = str(error).splitlines()
-        raise ConfigError("\n".join(f"{name}: {line}" for line in lines)) from None
-    if expected["steps"] > MOST_STEPS:
-        key = "hold_transits" if getattr(case.loading, "speed_m_s", None) is None else "speed_m_s"
-        raise ConfigError(
-            f"{name}: loading.{key} = {getattr(case.loading, key):g}: the run takes "
-            f"{expected['steps']:.3g} steps, expected at most {MOST_STEPS}"
-        )
-    return problem, expected
-
-
-def _find_checkpoint(out: Path, problem: Problem) -> None:
-    """Refuse to resume before anything is written when no checkpoint fits."""
-    from lithofrac.errors import CheckpointError, CoreError
-    from lithofrac.results import checkpoint
-
-    try:
-        checkpoint.read(out, checkpoint.fingerprint(problem))
-    except CoreError as error:
-        raise CheckpointError(f"--resume: {error}") from None
-
-
-def _prepare(options: Namespace, case: Case, mesh: Mesh) -> None:
-    """Make the results folder; what an earlier run left there goes, unless it is resumed."""
-    from lithofrac.config import ConfigError
-    from lithofrac.config.setting import kept, text_of
-    from lithofrac.results.files import OWN_FILES, write_whole
-
-    out, named = options.out, Path(options.case)
-    copy, (case, beside) = out / "case.yaml", kept(case)
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        if options.resume:
-            return
-        if copy.exists() and named.exists() and copy.samefile(named):
-            raise ConfigError(f"--out {out}: the run would replace its case file {named}")
-        for geometry, source in beside.items():
-            if (out / geometry).exists() and source.samefile(out / geometry):
-                raise ConfigError(f"--out {out}: the run would replace its geometry {source}")
-        for pattern in OWN_FILES:
-            for path in out.glob(pattern):
-                path.unlink()
-        write_whole(out / "mesh.npz", mesh.save)
-        write_whole(copy, lambda part: part.write_text(text_of(case)))
-        for geometry, source in beside.items():
-            write_whole(out / geometry, lambda part, source=source: shutil.copyfile(source, part))
-    except OSError as error:
-        raise ConfigError(f"--out {out}: cannot be written ({error.strerror})") from None
-
-
 def _print_plan(name: str, case: Case) -> None:
     import numpy as np
 
-    made = _made(name, case)
-    problem, expected = _accepted(name, case, made)
+    made = made_of(name, case)
+    problem, expected = accepted(name, case, made)
     of_case = [i for i, material in enumerate(problem.materials) if material == case.material]
     rock = np.isin(made.body, of_case)
     width = float(case.material.band_width_of(made.areas()[rock].max()))
