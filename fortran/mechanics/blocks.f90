@@ -149,8 +149,10 @@ contains
       do i = blocks%first_shared(run), blocks%first_shared(run + 1) - 1
          node = blocks%shared(1, i)
          place = blocks%shared(2, i)
-         force(:, node) = force(:, node) + blocks%buffer(:, place)
-         blocks%buffer(:, place) = 0.0_wp
+         force(1, node) = force(1, node) + blocks%buffer(1, place)
+         force(2, node) = force(2, node) + blocks%buffer(2, place)
+         blocks%buffer(1, place) = 0.0_wp
+         blocks%buffer(2, place) = 0.0_wp
       end do
    end subroutine assemble
 
