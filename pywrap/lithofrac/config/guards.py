@@ -1,7 +1,6 @@
 """What may stand under `guards:`: when a run is worth a warning, and when it is stopped.
 
-Whatever they say, a value that is not a finite number and an element without area end a run: no
-step can follow. Nothing in the core adds mass, so nothing guards it.
+Nothing in the core adds mass, so nothing guards it.
 """
 
 from typing import Annotated
@@ -18,34 +17,38 @@ FALLING = ("element_area", "time_step")  # bad when small
 
 
 class GuardsSection(Section):
-    """Thresholds; a run that passes a `stop` ends with exit code 3, its last checkpoint kept."""
+    """Thresholds; a run that passes a `stop` ends with exit code 3, its last checkpoint kept.
+
+    A value that is not a finite number and an element without area end a run in any case.
+    """
 
     energy_residual_warning: Limit = 1e-4
     """Inside minus outside of the energy ledger, over the largest energy so far."""
     energy_residual_stop: Limit = 1e-2
-    """Likewise."""
+    """The same, where the run stops."""
     element_area_warning: Share = 0.1
     """Smallest area of an element, over that in the undeformed mesh."""
     element_area_stop: Share = 0.0
-    """Likewise; 0 is an element that has turned inside out."""
+    """The same, where the run stops; 0 is an element that has turned inside out."""
     overlap_warning: Limit = 0.01
     """Depth of a boundary node in an element of which it is no corner, over the shortest edge of
     the boundary; at 0.01 contact lets go of the node. Only with `contact:`."""
     overlap_stop: Limit = 0.05
-    """Likewise."""
+    """The same, where the run stops."""
     time_step_warning: Share = 0.39
     """Critical time step of the smallest piece of a cut element, over that of the mesh at the
     start. Cuts keep 0.4, and the step of the run allows for it from the start."""
     time_step_stop: Share = 0.36
-    """Likewise; 0.36 is the step of a run with `time_step_factor: 0.9` that cuts elements."""
+    """The same, where the run stops; at 0.36 is the step of a run that cuts elements, with
+    `time_step_factor: 0.9`."""
     unconverged_warning: Share = 0.05
     """Steps in which contact did not converge, over all steps of the run."""
     unconverged_stop: Share = 0.5
-    """Likewise."""
+    """The same, where the run stops."""
     speed_warning: Limit = 0.1
     """Largest speed of a node, over the P wave speed of its body."""
     speed_stop: Limit = 0.2
-    """Likewise."""
+    """The same, where the run stops."""
 
     def problems(self) -> list[str]:
         """Sentences about stops that come before their warnings."""
