@@ -16,8 +16,8 @@ def parser() -> argparse.ArgumentParser:
         prog="lithofrac",
         description="Rock fracture benchmarks: continuum with a crack band, explicit in time.",
         epilog="example: lithofrac run sandstone_triaxial_p10 --out out/p10\n"
-        "exit codes: 0 good, 2 bad input, 3 numerical failure, 4 numbers moved,\n"
-        "            130 interrupted",
+        "exit codes: 0 good, 2 bad input or a folder that cannot be written,\n"
+        "            3 numerical failure, 4 numbers moved, 130 interrupted",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     version = f"lithofrac {lithofrac.__version__}, native: {str(NATIVE).lower()}"
@@ -74,7 +74,12 @@ def _run(commands) -> None:
     one.add_argument(
         "--threads", type=_threads, default=1, metavar="N", help="results are the same bits"
     )
-    one.add_argument("--resume", action="store_true", help="go on from the checkpoint in DIR")
+    start = one.add_mutually_exclusive_group()
+    start.add_argument("--resume", action="store_true", help="go on from the checkpoint in DIR")
+    start.add_argument(
+        "--resume-if-possible", action="store_true",
+        help="the same if a run of this very case and build was stopped there, else start anew",
+    )  # fmt: skip
     one.add_argument("--quiet", action="store_true", help="print errors only")
     _source_of_case(one)
 

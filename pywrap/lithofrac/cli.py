@@ -1,14 +1,17 @@
 """The command line: `lithofrac check | mesh | run | plot | report | ...`.
 
-Exit codes: 0 good, 2 bad input, 3 numerical failure, 4 numbers moved, 130 interrupted. Heavy
-modules are imported by the command that needs them.
+Exit codes: 0 good, 2 bad input or a folder that cannot be written, 3 numerical failure, 4 numbers
+moved, 130 interrupted. Heavy modules are imported by the command that needs them.
 """
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,40 +25,32 @@ if TYPE_CHECKING:
 
 GOOD, BAD_INPUT, NUMERICAL_FAILURE, MOVED, INTERRUPTED = 0, 2, 3, 4, 130
 MOST_STEPS = 1_000_000_000
-OWN_FILES = (
-    "summary.json",
-    "history.parquet",
-    "energy.parquet",
-    "probes.parquet",
-    "cracks.parquet",
-    "fragments.parquet",
-    "checkpoint.npz",
-    "checkpoint_previous.npz",
-    "fields.pvd",
-    "fields/frame_[0-9]*.vtu",
-    "fields/failed.vtu",
-    "mesh.npz",
-    "case.yaml",
-)  # what a run writes and the next one may delete
+BAD_INPUT_ERRORS = {"DataError", "CheckpointError", "FolderInUseError"}
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run one command; returns its exit code."""
     options = parser().parse_args(arguments)
+    with suppress(AttributeError):  # a title may hold letters that the locale lacks
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
-        return COMMANDS[options.command](options)
+        code = COMMANDS[options.command](options)
+        sys.stdout.flush()
+        return code
     except KeyboardInterrupt:
-        print("lithofrac: interrupted", file=sys.stderr)
+        _complain("interrupted")
         return INTERRUPTED
     except BrokenPipeError:  # `lithofrac check | head`
-        sys.stderr.close()
+        _give_up_output()
         return GOOD
     except Exception as error:
         code = _exit_code(error)
         if code is None:
             raise
         for line in str(error).splitlines():
-            print(f"lithofrac: {line}", file=sys.stderr)
+            _complain(line)
+        if isinstance(error, OSError):  # perhaps the output itself
+            _give_up_output()
         return code
 
 
@@ -64,9 +59,23 @@ def _exit_code(error: Exception) -> int | None:
     from lithofrac.config import ConfigError
 
     names = {base.__name__ for base in type(error).__mro__}
-    if isinstance(error, (ConfigError, OSError)) or names & {"DataError", "CheckpointError"}:
+    if isinstance(error, (ConfigError, OSError)) or names & BAD_INPUT_ERRORS:
         return BAD_INPUT
     return NUMERICAL_FAILURE if names & {"CoreError", "MeshError"} else None
+
+
+def _complain(sentence: str) -> None:
+    """Say what is wrong, unless nobody can be told."""
+    with suppress(OSError):
+        print(f"lithofrac: {sentence}", file=sys.stderr, flush=True)
+
+
+def _give_up_output() -> None:
+    """Drop what cannot be printed; Python would try again at its end, and fail with words."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def check(options: Namespace) -> int:
@@ -98,38 +107,43 @@ def mesh(options: Namespace) -> int:
 
 def run(options: Namespace) -> int:
     """Run a case into its results folder."""
+    from lithofrac.config import ConfigError
     from lithofrac.progress import Progress
+    from lithofrac.results import folder
     from lithofrac.run import simulate
 
+    out = options.out
     case = _case(options.case, options)
     made = _mesh_of(case, options)
     problem, _ = _accepted(options.case, case, made)
-    if options.resume:
-        _find_checkpoint(options.out, problem)
+    resume = _is_resumed(options, problem)
     name = Path(options.case).stem if options.case.endswith((".yaml", ".yml")) else options.case
-    _prepare(options, case, made)
     progress = Progress(name)
     before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
     try:
         summary = simulate(
             problem,
-            options.out,
+            out,
             threads=options.threads,
-            resume=options.resume,
+            resume=resume,
             progress=None if options.quiet else progress,
             meta={"case": name, "title": case.title, "commit": _commit()},
+            prepare=None
+            if resume
+            else partial(folder.prepare, out, case, Path(options.case), made),
         )
     except KeyboardInterrupt:
-        print(
-            f"lithofrac: interrupted; the same command with --resume goes on from {options.out}",
-            file=sys.stderr,
-        )
+        _complain(f"interrupted{folder.way_on(out)}")
         return INTERRUPTED
+    except OSError as error:
+        why = os.strerror(error.errno) if error.errno else " ".join(str(error).split())
+        text = f"--out {out}: cannot be written ({why}){folder.way_on(out)}"
+        raise ConfigError(text) from None
     finally:
         progress.close()
         signal.signal(signal.SIGTERM, before)
     if not options.quiet:
-        _print_summary(name, summary, options.out)
+        _print_summary(name, summary, out)
     return GOOD
 
 
@@ -296,38 +310,21 @@ def _accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
     return problem, expected
 
 
-def _find_checkpoint(out: Path, problem: Problem) -> None:
-    """Refuse to resume before anything is written when no checkpoint fits."""
-    from lithofrac.errors import CheckpointError, CoreError
-    from lithofrac.results import checkpoint
+def _is_resumed(options: Namespace, problem: Problem) -> bool:
+    """Whether the run goes on from a checkpoint, and a word where it is not as expected."""
+    from lithofrac.results import folder
 
-    try:
-        checkpoint.read(out, checkpoint.fingerprint(problem))
-    except CoreError as error:
-        raise CheckpointError(f"--resume: {error}") from None
-
-
-def _prepare(options: Namespace, case: Case, mesh: Mesh) -> None:
-    """Make the results folder; what an earlier run left there goes, unless it is resumed."""
-    from lithofrac.config import ConfigError
-    from lithofrac.config.setting import text_of
-    from lithofrac.results.files import write_whole
-
-    out, named = options.out, Path(options.case)
-    copy = out / "case.yaml"
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        if options.resume:
-            return
-        if copy.exists() and named.exists() and copy.samefile(named):
-            raise ConfigError(f"--out {out}: the run would replace its case file {named}")
-        for pattern in OWN_FILES:
-            for path in out.glob(pattern):
-                path.unlink()
-        write_whole(out / "mesh.npz", mesh.save)
-        write_whole(copy, lambda part: part.write_text(text_of(case)))
-    except OSError as error:
-        raise ConfigError(f"--out {out}: cannot be written ({error.strerror})") from None
+    if options.resume:
+        found = folder.to_resume(options.out, problem)
+    elif options.resume_if_possible:
+        found = folder.cut_off(options.out, problem)
+        if found is None and folder.way_on(options.out):
+            _complain(f"{options.out}: its checkpoint is not of this run, starting anew")
+    else:
+        return False
+    for note in found.notes if found else []:
+        _complain(f"{note}; going on from {found.path.name}")
+    return found is not None
 
 
 def _print_plan(name: str, case: Case) -> None:

@@ -215,3 +215,4 @@ class Problem:
     measures: Measures | None = None
     records: int = 1000  # rows of the history
     fields: int = 5  # VTU frames, 0 for none
+    checkpoint_seconds: float = 20.0  # of wall time between two checkpoints; no bit depends on it

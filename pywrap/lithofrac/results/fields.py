@@ -9,7 +9,7 @@ import meshio
 import numpy as np
 
 from lithofrac.core import Run
-from lithofrac.results.files import write_whole
+from lithofrac.results.files import write_text, write_whole
 
 
 def write_frame(path: Path, run: Run) -> None:
@@ -54,7 +54,7 @@ def write_series(path: Path, frames: list[tuple[float, str]]) -> None:
         '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n'
         f"  <Collection>\n{rows}  </Collection>\n</VTKFile>\n"
     )
-    write_whole(path, lambda part: part.write_text(text))
+    write_text(path, text)
 
 
 def _with_zero(plane: np.ndarray) -> np.ndarray:

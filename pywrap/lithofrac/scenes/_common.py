@@ -32,6 +32,7 @@ def settings(case: Case, mesh: Mesh, points: dict[str, tuple[float, float]]) -> 
         "probes": probes(case, mesh, points),
         "records": case.output.records,
         "fields": case.output.fields,
+        "checkpoint_seconds": case.output.checkpoint_seconds,
     }
 
 

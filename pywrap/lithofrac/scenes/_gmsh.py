@@ -54,7 +54,7 @@ def mesh_from(geo: str) -> RawMesh:
     """
     with tempfile.TemporaryDirectory(prefix="lithofrac-") as name:
         folder = Path(name)
-        (folder / "scene.geo").write_text(HEAD + geo)
+        (folder / "scene.geo").write_text(HEAD + geo, encoding="utf-8")
         command = [*_gmsh(), "scene.geo", "-2", "-o", "scene.msh", "-noenv", "-v", "2"]
         own_home = {**os.environ, "HOME": name, "OMP_NUM_THREADS": "1"}
         try:
