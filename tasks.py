@@ -7,8 +7,8 @@ python3 tasks.py test [--all]                    linters, tests on three builds,
                                                  --all adds the tests marked slow
 python3 tasks.py setup                           only install what is missing and build
 python3 tasks.py benchmark                       speed of the core, kept in out/benchmark.json
-python3 tasks.py portable                        a second build, beside the installed one: its bits
-                                                 are the same on every x86-64, for references
+python3 tasks.py portable                        a second build beside the installed one, for
+                                                 references: bits of any x86-64 since 2013
 
 Each task sets up what it needs first; once that is done, a second call goes straight to work.
 One file on purpose: it has to run before anything of this project is installed.

@@ -30,7 +30,7 @@ def unbroken(cracking, tmp_path_factory) -> Path:
 def moments():
     """moments(n, seed) -> n random moments of the run, in checkpoints; the same each time."""
 
-    def made(n: int, seed: int = 1) -> list[float]:
+    def made(n: int, seed: int) -> list[float]:
         source = random.Random(seed)
         return [source.uniform(0.0, RECORDS) for _ in range(n)]
 
