@@ -1,4 +1,4 @@
-"""What `lithofrac run` finds, may delete and resumes (pywrap/lithofrac/results/folder.py)."""
+"""What `lithofrac run` finds, may delete and resumes (pywrap/lithofrac/intake.py)."""
 
 import json
 import os
