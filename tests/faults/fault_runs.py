@@ -24,6 +24,7 @@ output: {{records: {RECORDS}, fields: 7, checkpoint_seconds: 0}}
 # Of a summary: what depends on the machine and its load, and on how the run came to its end.
 TIMES = ("core_seconds", "wall_seconds", "element_steps_per_core_second", "finished")
 HOW = ("threads", "notes", "commit")
+MADE_BY = ("clocks", "build", "digest")  # of a checkpoint
 
 
 class Cracking:
@@ -88,9 +89,9 @@ def files(folder: Path) -> dict[str, bytes]:
 
 
 def state(folder: Path) -> dict[str, bytes]:
-    """The newest checkpoint without its clocks, to the bit."""
+    """The newest checkpoint without its clocks and builder, to the bit."""
     with np.load(folder / "checkpoint.npz", allow_pickle=False) as file:
-        return {name: file[name].tobytes() for name in file if name not in ("clocks", "digest")}
+        return {name: file[name].tobytes() for name in file if name not in MADE_BY}
 
 
 def summary(folder: Path) -> dict:
