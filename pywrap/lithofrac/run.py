@@ -118,8 +118,6 @@ def simulate(
         session.notes += notes
         if resume:
             session.resume()
-        else:
-            session.begin()
         return _to_its_end(session, out, progress)
 
 
@@ -128,8 +126,9 @@ def _to_its_end(session: _Session, out: Path, progress: Callable[[dict], None] |
     try:
         session.run_to_end(progress)
     except KeyboardInterrupt:
-        session.save_checkpoint()
-        session.write("interrupted")
+        if session.recorder.history:
+            session.save_checkpoint()
+            session.write("interrupted")
         raise
     except CoreError as error:
         write_frame(out / "fields" / "failed.vtu", session.run)
@@ -162,12 +161,6 @@ class _Session:
     def wall_seconds(self) -> float:
         return self.wall_before + time.perf_counter() - self.wall_start
 
-    def begin(self) -> None:
-        """First record and first checkpoint; a run that is stopped before has nothing to keep."""
-        self.run.advance(0, self.threads)
-        self._record()
-        self.save_checkpoint()
-
     def resume(self) -> None:
         found = checkpoint.recover(self.out, self.mark)
         arrays = found.arrays
@@ -195,6 +188,13 @@ class _Session:
 
     def run_to_end(self, progress: Callable[[dict], None] | None) -> None:
         run = self.run
+        if not self.recorder.history:
+            with _signals_later() as asked_to_stop:
+                run.advance(0, self.threads)
+                self._record()
+            if asked_to_stop:
+                raise KeyboardInterrupt
+            self.save_checkpoint()
         saved = time.perf_counter()
         while run.step < self.steps:
             with _signals_later() as asked_to_stop:

@@ -27,15 +27,31 @@ def test_stopped_run_keeps_where_it_was(cracking, unbroken, tmp_path, number):
 
 
 @SIGNALS
-def test_stopped_within_its_first_record_it_has_nothing_to_keep_and_says_so(
-    cracking, tmp_path, monkeypatch, capsys, number
+def test_stopped_within_its_first_record_it_keeps_that(
+    cracking, unbroken, tmp_path, monkeypatch, capsys, number
 ):
-    out = tmp_path / "out"
+    out, note = tmp_path / "out", Recorder._note_fragments
 
     def stopped(self):
         os.kill(os.getpid(), number)
+        note(self)
 
-    monkeypatch.setattr(Recorder, "_note_fragments", stopped)
+    with monkeypatch.context() as patch:
+        patch.setattr(Recorder, "_note_fragments", stopped)
+        assert main(cracking.words(out)) == 130
+    said = capsys.readouterr().err
+    assert said == f"lithofrac: interrupted; the same command with --resume goes on from {out}\n"
+    assert summary(out)["steps"] == 0
+    assert main(cracking.words(out, "--resume")) == 0
+    assert_same(unbroken, out)
+
+
+@SIGNALS
+def test_stopped_before_its_first_record_it_has_nothing_to_keep_and_says_so(
+    cracking, tmp_path, monkeypatch, capsys, number
+):
+    out = tmp_path / "out"
+    monkeypatch.setattr(Recorder, "__init__", lambda *_: os.kill(os.getpid(), number))
     assert main(cracking.words(out)) == 130
     assert capsys.readouterr().err == "lithofrac: interrupted\n"
     assert not (out / "summary.json").exists()
