@@ -242,3 +242,4 @@ class Problem:
     records: int = 1000  # rows of the history
     fields: int = 5  # VTU frames, 0 for none
     guards: Guards = Guards()
+    checkpoint_seconds: float = 20.0  # of wall time between two checkpoints; no bit depends on it

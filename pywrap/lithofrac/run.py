@@ -29,9 +29,9 @@ from lithofrac.results import checkpoint
 from lithofrac.results.cracks import crack_table, fragment_table
 from lithofrac.results.fields import write_cracks, write_frame, write_series
 from lithofrac.results.files import write_json, write_table
+from lithofrac.results.lock import only_run
 from lithofrac.results.recorder import Recorder
 
-CHECKPOINT_SECONDS = 20.0
 FAILED_FRAME = "fields/failed.vtu"
 # Of one core, for the prediction of `plan`: all elastic, and with half of the elements yielding.
 ELASTIC_RATE, YIELDING_RATE = 60e6, 6e6  # element-steps per second
@@ -79,6 +79,7 @@ def simulate(
     resume: bool = False,
     progress: Callable[[dict], None] | None = None,
     meta: dict | None = None,
+    prepare: Callable[[], None] | None = None,
     warn: Callable[[str], None] | None = None,
 ) -> dict:
     """Step `problem` to its end and write the results folder `out`.
@@ -92,6 +93,7 @@ def simulate(
     progress : called at every record with step, steps, time_s, percent, rate, residual and
         seconds_left
     meta : entries for the summary (case, commit)
+    prepare : called once the folder belongs to this run, before anything is written into it
     warn : called with a sentence when a guard warns for the first time
 
     Returns
@@ -107,18 +109,30 @@ def simulate(
         Or there is no good checkpoint to resume from.
     KeyboardInterrupt
         Passed on after a checkpoint is written; summary.json says `interrupted`.
+    FolderInUseError
+        Another run is at work in the folder.
     OSError
-        The folder cannot be written.
+        The folder cannot be written; the checkpoints that it holds stay as they are.
     """
-    (out / "fields").mkdir(parents=True, exist_ok=True)
-    session = _Session(problem, out, threads, meta or {}, warn)
-    if resume:
-        session.resume()
+    with only_run(out) as notes:
+        if prepare is not None:
+            prepare()
+        (out / "fields").mkdir(exist_ok=True)
+        session = _Session(problem, out, threads, meta or {}, warn)
+        session.notes += notes
+        if resume:
+            session.resume()
+        return _to_its_end(session, out, progress)
+
+
+def _to_its_end(session: _Session, out: Path, progress: Callable[[dict], None] | None) -> dict:
+    """Step a session to its end; whatever stops it, the folder says so."""
     try:
         session.run_to_end(progress)
     except KeyboardInterrupt:
-        session.save_checkpoint()
-        session.write("interrupted")
+        if session.recorder.history:
+            session.save_checkpoint()
+            session.write("interrupted")
         raise
     except CoreError as error:
         session.fail(str(error))
@@ -160,7 +174,9 @@ class _Session:
         return self.wall_before + time.perf_counter() - self.wall_start
 
     def resume(self) -> None:
-        arrays, self.notes = checkpoint.read(self.out, self.mark)
+        found = checkpoint.recover(self.out, self.mark)
+        arrays = found.arrays
+        self.notes += found.notes
         self.run.restore(arrays["state"])
         self.recorder.restore(arrays)
         self.watch.restore(arrays)
@@ -189,6 +205,7 @@ class _Session:
             "state": self.run.save(),
             "clocks": np.array([self.core_seconds, self.wall_seconds]),
             "frames": np.array([moment for moment, *_ in self.frames]),
+            "finished": np.array(self.run.step >= self.steps),
             **self.recorder.arrays(),
             **self.watch.arrays(),
         }
@@ -196,9 +213,12 @@ class _Session:
     def run_to_end(self, progress: Callable[[dict], None] | None) -> None:
         run = self.run
         if not self.recorder.history:
-            run.advance(0, self.threads)
-            self._record()
-            self._look(step_before=-1)
+            with _signals_later() as asked_to_stop:
+                run.advance(0, self.threads)
+                self._record()
+                self._look(step_before=-1)
+            if asked_to_stop:
+                raise KeyboardInterrupt
             self.save_checkpoint()
         saved = time.perf_counter()
         while run.step < self.steps:
@@ -211,7 +231,7 @@ class _Session:
                 raise KeyboardInterrupt
             if progress is not None:
                 progress(self._progress())
-            if time.perf_counter() - saved > CHECKPOINT_SECONDS:
+            if time.perf_counter() - saved >= self.problem.checkpoint_seconds:
                 self.save_checkpoint()
                 saved = time.perf_counter()
         self.save_checkpoint()

@@ -45,6 +45,8 @@ class Output(Section):
     """Rows of the history."""
     fields: int = Field(default=5, ge=0, le=10_000)
     """Frames of the fields, 0 for none."""
+    checkpoint_seconds: float = Field(default=20.0, ge=0.0, le=1e6)
+    """Wall time between two checkpoints, 0 for one at every record; no number depends on it."""
 
 
 class Probe(Section):

@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 from lithofrac.core import Run
-from lithofrac.results.files import write_whole
+from lithofrac.results.files import write_text, write_whole
 
 TENSOR, AXES = ("xx", "yy", "zz", "xy"), ("axis_1", "axis_2", "zz")
 COMPONENTS = {
@@ -109,7 +109,7 @@ def write_series(path: Path, frames: list[tuple]) -> None:
         '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n'
         f"  <Collection>\n{rows}  </Collection>\n</VTKFile>\n"
     )
-    write_whole(path, lambda part: part.write_text(text))
+    write_text(path, text)
 
 
 def _write(path: Path, grid: meshio.Mesh) -> None:

@@ -34,6 +34,7 @@ def settings(case: Case, mesh: Mesh, points: dict[str, tuple[float, float]]) -> 
         "records": case.output.records,
         "fields": case.output.fields,
         "guards": Guards(**case.guards.model_dump()),
+        "checkpoint_seconds": case.output.checkpoint_seconds,
     }
 
 
