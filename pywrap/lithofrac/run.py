@@ -19,6 +19,7 @@ import numpy as np
 import lithofrac
 from lithofrac._build import NATIVE
 from lithofrac.analysis.strength import first_peak
+from lithofrac.config.cost import ELASTIC_RATE, YIELDING_RATE
 from lithofrac.core import ContactStatistics, Run
 from lithofrac.errors import CoreError
 from lithofrac.problem import Problem
@@ -30,8 +31,6 @@ from lithofrac.results.recorder import Recorder
 
 CHECKPOINT_SECONDS = 20.0
 MANY_UNCONVERGED = 0.05  # of the steps: worth a note in the summary
-# Of one core, for the prediction of `plan`: all elastic, and with half of the elements yielding.
-ELASTIC_RATE, YIELDING_RATE = 60e6, 6e6  # element-steps per second
 
 
 def plan(problem: Problem) -> dict:

@@ -20,6 +20,19 @@ SOURCES = CORE + [
 ]
 
 
+@cache
+def quick_cost(case):
+    """What a run of the quick suite is expected to take."""
+    return predicted(QUICK.case(case))
+
+
+# Where the tree is and somebody reads what they say, not on a node of a cluster.
+localrules:
+    portable,
+    regression,
+    update_references,
+
+
 wildcard_constraints:
     quick="|".join([*QUICK.cases, *REALISED]),
     build="installed|portable",
@@ -50,6 +63,12 @@ rule run_quick:
         first=lambda wildcards: (
             f"PYTHONPATH={PORTABLE}" if wildcards.build == "portable" else ""
         ),
+    threads: lambda wildcards: quick_cost(wildcards.quick).threads
+    resources:
+        mem_mb=lambda wildcards: quick_cost(wildcards.quick).mem_mb,
+        runtime=lambda wildcards: quick_cost(wildcards.quick).runtime,
+    group:
+        lambda wildcards: quick_cost(wildcards.quick).group
     message:
         "Run {wildcards.quick} of the quick suite ({wildcards.build} build)"
     shell:
