@@ -172,14 +172,14 @@ rule simulate:
         f"{OUT}/log/simulate_{{case}}.txt",
     benchmark:
         f"{OUT}/benchmarks/{{case}}.tsv"
-    params:
-        case=lambda wildcards: CASES[wildcards.case],
+    group:
+        lambda wildcards: cost(wildcards.case).group
     threads: lambda wildcards: cost(wildcards.case).threads
     resources:
         mem_mb=lambda wildcards: cost(wildcards.case).mem_mb,
         runtime=lambda wildcards: cost(wildcards.case).runtime,
-    group:
-        lambda wildcards: cost(wildcards.case).group
+    params:
+        case=lambda wildcards: CASES[wildcards.case],
     message:
         "Mesh and run {wildcards.case}"
     shell:

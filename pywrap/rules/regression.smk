@@ -58,17 +58,17 @@ rule run_quick:
         QUICK_RUN,
     log:
         f"{OUT}/log/regression_{{build}}_{{quick}}.txt",
+    group:
+        lambda wildcards: quick_cost(wildcards.quick).group
+    threads: lambda wildcards: quick_cost(wildcards.quick).threads
+    resources:
+        mem_mb=lambda wildcards: quick_cost(wildcards.quick).mem_mb,
+        runtime=lambda wildcards: quick_cost(wildcards.quick).runtime,
     params:
         case=lambda wildcards: QUICK.case(wildcards.quick).resolved(),
         first=lambda wildcards: (
             f"PYTHONPATH={PORTABLE}" if wildcards.build == "portable" else ""
         ),
-    threads: lambda wildcards: quick_cost(wildcards.quick).threads
-    resources:
-        mem_mb=lambda wildcards: quick_cost(wildcards.quick).mem_mb,
-        runtime=lambda wildcards: quick_cost(wildcards.quick).runtime,
-    group:
-        lambda wildcards: quick_cost(wildcards.quick).group
     message:
         "Run {wildcards.quick} of the quick suite ({wildcards.build} build)"
     shell:

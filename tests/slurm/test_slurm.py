@@ -47,6 +47,15 @@ cases:
       scene.far_elements_per_radius: 2
       loading.speed_m_s: 0.04
 """
+STUDY = """\
+title: Rate
+base: configs/cases/single_element.yaml
+set: {loading.end_strain: 0.001}
+grid: {loading.speed_m_s: [0.1, 0.2]}
+name: v{loading.speed_m_s}
+quantities: [peak_stress_MPa]
+plot: {x: loading.speed_m_s, y: [peak_stress_MPa]}
+"""
 
 
 def lacking(*plugins):
@@ -134,7 +143,7 @@ def test_run_that_fails_is_told_and_the_others_are_kept(tree, cluster):
     logs = list((tree / ".snakemake" / "slurm_logs").rglob("*.log"))
     assert any("simulate_tears.txt" in log.read_text() for log in logs)
     code, said = snakemake(tree, os.environ, "three", "out", cases, "--dry-run", "--quiet", "rules")
-    assert re.findall(r"^simulate +(\d+)$", said, re.MULTILINE) == ["1"], said
+    assert set(re.findall(r"^simulate +(\d+)$", said, re.MULTILINE)) == {"1"}, said
 
 
 def test_failure_in_a_shared_job_is_told_and_the_others_run_without_it(tree, cluster):
@@ -181,6 +190,29 @@ def test_same_suite_has_the_same_bits_here_and_on_the_cluster(tree, cluster):
         assert list(here) == list(there)
         assert [name for name in here if here[name] != there[name]] == []
     assert "cracks.parquet" in contents(tree / "here" / "runs" / "hole")
+
+
+def test_study_has_the_same_table_here_and_on_the_cluster(tree, cluster):
+    """Also that a site's own profile is a folder anywhere."""
+    profile = tree / "site"
+    profile.mkdir()
+    words = (tree / "configs" / "profiles" / "slurm" / "config.yaml").read_text()
+    own = "slurm-status-command: squeue\nslurm-no-account: true\nseconds-between-status-checks: 2\n"
+    (profile / "config.yaml").write_text(words + own)
+    (tree / "study.yaml").write_text(STUDY)
+    for out, environment, where in (
+        ("here", os.environ, ["--cores", "1"]),
+        ("there", cluster, ["--profile", str(profile)]),
+    ):
+        done = subprocess.run(
+            [sys.executable, "-m", "lithofrac", "study", "study.yaml", "--out", out, *where],
+            cwd=tree, env=environment, capture_output=True, text=True, timeout=600,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        assert set(re.findall(r"Mesh and run (\S+)", done.stderr)) == {"v0.1", "v0.2"}
+    assert submitted((tree / "there" / "log" / "snakemake.txt").read_text()) >= 2  # runs, table
+    tables = [(tree / out / "table.parquet").read_bytes() for out in ("here", "there")]
+    assert tables[0] == tables[1]
 
 
 @pytest.mark.skipif(

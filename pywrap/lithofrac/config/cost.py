@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from lithofrac.config.case import Case
 from lithofrac.config.element_count import element_count
+from lithofrac.config.gmsh_file import GmshFile
 from lithofrac.config.loading import TractionLoading
 from lithofrac.config.scene import (
     Bar,
@@ -35,6 +36,10 @@ BASE_MB = 1000  # a run takes 220, and Snakemake stands beside it in the job
 BYTES_PER_ELEMENT = 2000  # of which the core takes less than half
 ELEMENTS_A_THREAD, MOST_THREADS = 20_000, 8  # choice: runs side by side use cores better
 SHORT_SECONDS = 120.0  # choice: up to here a job of its own would be mostly waiting
+OWN_ELEMENTS, OWN_STEPS = (
+    20_000,
+    500_000,
+)  # choice: a geometry of one's own tells its size to gmsh only
 
 
 @dataclass(frozen=True)
@@ -74,7 +79,12 @@ class Cost:
 
 
 def predicted(case: Case) -> Cost:
-    """What a run of the case will take, good to a factor of 1.5 in elements and steps."""
+    """What a run of the case will take, good to a factor of 1.5 in elements and steps.
+
+    Of a geometry from a file nothing is known before gmsh reads it: a fixed, ample guess.
+    """
+    if isinstance(case.scene, GmshFile):
+        return Cost(OWN_ELEMENTS, OWN_STEPS, OWN_ELEMENTS * OWN_STEPS / YIELDING_RATE)
     bodies = [(element_count(case.scene), *_rock(case)), *_platens(case)]
     elements = sum(count for count, _, _ in bodies)
     step = case.time_step_factor * min(share * size for _, share, size in bodies)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lithofrac.config import find_case, load_suite, predicted
+from lithofrac.config import find_case, load_case, load_suite, predicted
 from lithofrac.config.cost import BASE_MB, MOST_THREADS, START_MINUTES, Cost
 from lithofrac.run import plan
 from lithofrac.scenes.make import make_mesh, make_problem
@@ -67,3 +67,9 @@ def test_large_run_asks_for_more():
     assert large.mem_mb == BASE_MB + 2000
     assert large.runtime > large.seconds / 60
     assert large.group is None
+
+
+def test_own_geometry_gets_an_ample_guess():
+    cost = predicted(load_case("configs/examples/stope.yaml"))
+    assert (cost.threads, cost.group) == (1, None)
+    assert cost.runtime > 60
