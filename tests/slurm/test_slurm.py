@@ -14,6 +14,8 @@ import numpy as np
 import pytest
 from one_node import INSTALL, PBS, missing, one_node, which
 
+from lithofrac.config import load_suite, predicted
+
 ROOT = Path(__file__).parents[2]
 PARTS = ("Snakefile", "configs", "data", "reports", "fortran", "pywrap")
 SLURM = "snakemake_executor_plugin_slurm"
@@ -120,7 +122,19 @@ def on_slurm(tree, environment, suite, out, cases, together):
 
 def submitted(said):
     """Number of jobs that Slurm was given."""
-    return len(re.findall(r"submitted with SLURM jobid \d+", said))
+    return len(numbers(said))
+
+
+def numbers(said):
+    """Of the jobs that Slurm was given."""
+    return re.findall(r"submitted with SLURM jobid (\d+)", said)
+
+
+def asked_for(environment, jobs):
+    """Time limit, memory and cores of jobs, as Slurm has them."""
+    command = ["squeue", "-h", "--states", "all", "-j", ",".join(jobs), "-o", "%l %m %C"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    return sorted(done.stdout.splitlines())
 
 
 def status(tree, out, case):
@@ -135,6 +149,9 @@ def test_run_that_fails_is_told_and_the_others_are_kept(tree, cluster):
     code, said = on_slurm(tree, cluster, "three", "out", cases, together=1)
     assert code != 0
     assert submitted(said) == 3
+    costs = [predicted(load_suite(tree / "configs" / "three.yaml").case(case)) for case in cases]
+    wanted = sorted(f"{cost.runtime}:00 {cost.mem_mb}M {cost.threads}" for cost in costs)
+    assert asked_for(cluster, numbers(said)) == wanted
     assert [status(tree, "out", case) for case in cases] == ["completed", "completed", None]
     assert "out/log/simulate_tears.txt" in said
     why = (tree / "out" / "log" / "simulate_tears.txt").read_text()

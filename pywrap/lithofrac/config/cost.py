@@ -2,7 +2,7 @@
 
 Elements are those of `element_count` and of the platens; steps are the duration of the test over
 the time step of its smallest elements. `SAFETY` covers what that leaves out. Rates and shares were
-measured on the suite; reports/guide/clusters.md says how near its runs come.
+measured on the suite; reports/guide/cluster.md says how near its runs come.
 """
 
 import math
