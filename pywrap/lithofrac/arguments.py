@@ -134,7 +134,9 @@ def _study(commands) -> None:
     one.add_argument(
         "--out", type=_path, metavar="DIR", help="results folder; none: check and list the runs"
     )
-    one.add_argument("--cores", type=_threads, metavar="N", help="runs at a time, default all")
+    where = one.add_mutually_exclusive_group()
+    where.add_argument("--cores", type=_threads, metavar="N", help="runs at a time, default all")
+    where.add_argument("--profile", metavar="DIR", help="run on a cluster: slurm, pbs or a folder")
     one.add_argument("--quiet", action="store_true", help="print errors only")
 
 

@@ -174,7 +174,7 @@ def study(options: Namespace) -> int:
         return GOOD
     before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
     try:
-        start(options.file, texts, options.out, options.cores, options.quiet)
+        start(options.file, texts, options.out, options.cores, options.quiet, options.profile)
     finally:
         signal.signal(signal.SIGTERM, before)
     if not options.quiet:

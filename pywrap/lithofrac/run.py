@@ -21,6 +21,7 @@ from lithofrac._build import NATIVE
 from lithofrac.analysis.crack_faces import find_faces
 from lithofrac.analysis.frames import MM, Frame
 from lithofrac.analysis.strength import first_peak
+from lithofrac.config.cost import ELASTIC_RATE, YIELDING_RATE
 from lithofrac.core import Run
 from lithofrac.errors import CoreError
 from lithofrac.guards import Watch
@@ -33,8 +34,6 @@ from lithofrac.results.lock import only_run
 from lithofrac.results.recorder import Recorder
 
 FAILED_FRAME = "fields/failed.vtu"
-# Of one core, for the prediction of `plan`: all elastic, and with half of the elements yielding.
-ELASTIC_RATE, YIELDING_RATE = 60e6, 6e6  # element-steps per second
 
 
 def plan(problem: Problem) -> dict:

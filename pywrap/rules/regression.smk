@@ -20,6 +20,19 @@ SOURCES = CORE + [
 ]
 
 
+@cache
+def quick_cost(case):
+    """What a run of the quick suite is expected to take."""
+    return predicted(QUICK.case(case))
+
+
+# Where the tree is and somebody reads what they say, not on a node of a cluster.
+localrules:
+    portable,
+    regression,
+    update_references,
+
+
 wildcard_constraints:
     quick="|".join([*QUICK.cases, *REALISED]),
     build="installed|portable",
@@ -45,6 +58,12 @@ rule run_quick:
         QUICK_RUN,
     log:
         f"{OUT}/log/regression_{{build}}_{{quick}}.txt",
+    group:
+        lambda wildcards: quick_cost(wildcards.quick).group
+    threads: lambda wildcards: quick_cost(wildcards.quick).threads
+    resources:
+        mem_mb=lambda wildcards: quick_cost(wildcards.quick).mem_mb,
+        runtime=lambda wildcards: quick_cost(wildcards.quick).runtime,
     params:
         case=lambda wildcards: QUICK.case(wildcards.quick).resolved(),
         first=lambda wildcards: (
