@@ -36,7 +36,7 @@ def test_a_body_that_flies_and_spins_ten_turns_keeps_its_energy():
     mesh, spin = rectangle(3, 3, jitter=0.2), 2e-3  # rad/s, a thousandth of c at its corners
     arm = mesh.nodes - [0.5, 0.5]
     velocity = np.array([2e-3, -1e-3]) + spin * np.column_stack([-arm[:, 1], arm[:, 0]])
-    run = launched(mesh, velocity, Damping(alpha=0.05))
+    run = launched(mesh, velocity, Damping(alpha=0.01))
     turn = round(2 * np.pi / spin / run.dt)
     run.advance(turn)
     worst = drift(run, 10 * turn)
