@@ -193,7 +193,7 @@ def test_other_units_give_the_same_results(units):
 
 
 def test_a_specimen_a_million_lengths_from_the_origin_is_the_same():
-    """Positions lose six of their digits there, results no more."""
+    """Positions lose six digits there, results no more: moments are not taken about the origin."""
     near = specimen()
     far = replace(near, mesh=replace(near.mesh, nodes=near.mesh.nodes + [2e4, 2e4]))
     here, there = (results(given, 600)[0] for given in (near, far))
