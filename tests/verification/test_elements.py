@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from models import Elastic, element_path, one_triangle, problem, rectangle
 
+from lithofrac.config import Material
 from lithofrac.core import Run
 
 TRIANGLE = 1e-3 * np.array([[0.0, 0.0], [1.0, 0.2], [0.3, 0.9]])
@@ -108,6 +109,26 @@ def test_nodal_forces_are_the_gradient_of_the_energy(axisymmetric):
         way = rng.normal(size=(3, 2))
         slope = (energy(base + step * way) - energy(base - step * way)) / (2 * step)
         assert (forces[0] * way).sum() == pytest.approx(slope, rel=1e-7)
+
+
+@pytest.mark.verification
+def test_nodal_forces_are_the_gradient_of_the_energy_after_it_has_yielded():
+    """Stress and strain have other axes then, so a moment is left that the rotation takes up."""
+    sandstone = Material.load("sandstone")
+    peak = displacements(TRIANGLE, rotation(0.2) @ [[0.99, 0.004], [0.004, 1.003]])
+    base = displacements(TRIANGLE, rotation(0.9) @ [[0.991, 0.002], [0.002, 1.002]])
+    rng, step = np.random.default_rng(3), 1e-10
+    b, c = TRIANGLE[1] - TRIANGLE[0], TRIANGLE[2] - TRIANGLE[0]
+    volume = 0.5 * (b[0] * c[1] - b[1] * c[0])
+    state, forces, *_ = element_path(sandstone, TRIANGLE, [peak, base])
+    assert state.plastic_strain[1] > 1e-3
+    for _ in range(5):
+        way = rng.normal(size=(3, 2))
+        path = [peak, base, base + step * way, base - step * way]
+        state, *_ = element_path(sandstone, TRIANGLE, path)
+        assert np.ptp(state.plastic_strain) == 0.0, "elastic from the peak on"
+        work = 0.5 * (state.stress[2] + state.stress[3]) @ (state.strain[2] - state.strain[3])
+        assert (forces[1] * way).sum() == pytest.approx(volume * work / (2 * step), rel=1e-6)
 
 
 @pytest.mark.verification
