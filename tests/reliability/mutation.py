@@ -283,7 +283,9 @@ def commit_of(root: Path) -> str:
     return git("rev-parse", "--short", "HEAD") + (" with changes" if changed else "")
 
 
-def table(outcomes: list[Outcome], commit: str, seconds: float, n_lanes: int) -> str:
+def table(
+    outcomes: list[Outcome], commit: str, seconds: float, processors: float, n_lanes: int
+) -> str:
     """The report, Markdown."""
     control, *tried = outcomes
     caught = sum(outcome.caught for outcome in tried)
@@ -297,7 +299,8 @@ def table(outcomes: list[Outcome], commit: str, seconds: float, n_lanes: int) ->
         f"- Commit: {commit}",
         f"- Caught: {caught} of {len(tried)}",
         f"- The code as it stands, by the same tests: {control.by}",
-        f"- Time: {seconds / 60:.1f} minutes, {n_lanes} at a time, {platform.machine()}",
+        f"- Time: {seconds / 60:.1f} minutes, {n_lanes} at a time; of processors "
+        f"{processors / 60:.1f} minutes ({platform.machine()})",
         "",
         "| mutant | file | what is wrong | caught by | seconds |",
         "|---|---|---|---|---|",
@@ -328,7 +331,15 @@ def main(arguments: list[str] | None = None) -> int:
     outcomes = run(chosen, ROOT, given.lanes)
     seconds = time.monotonic() - start
     if not given.names:
-        TABLE.write_text(table(outcomes, commit_of(ROOT), seconds, given.lanes), encoding="utf-8")
+        times = os.times()
+        text = table(
+            outcomes,
+            commit_of(ROOT),
+            seconds,
+            times.children_user + times.children_system,
+            given.lanes,
+        )
+        TABLE.write_text(text, encoding="utf-8")
     control, *tried = outcomes
     alive = [outcome for outcome in tried if not outcome.caught]
     print(f"{len(tried) - len(alive)} of {len(tried)} caught in {seconds:.0f} s")

@@ -122,9 +122,10 @@ def test_the_report_says_who_was_caught_by_what_and_who_was_not():
         Outcome(LINE, True, "tests/test_a.py::test_it", 2.0),
         Outcome(LINE, False, "survives", 3.0),
     ]
-    text = mutation.table(outcomes, "abc1234", 90.0, 2)
+    text = mutation.table(outcomes, "abc1234", 90.0, 120.0, 2)
     assert "- Commit: abc1234" in text
     assert "- Caught: 1 of 2" in text
+    assert "1.5 minutes, 2 at a time; of processors 2.0 minutes" in text
     assert "9 passed in 1.0s" in text
     assert "| one | `a.f90` | a sign | `test_a.py::test_it` | 2 |" in text
     assert "| one | `a.f90` | a sign | **nothing: survives** | 3 |" in text

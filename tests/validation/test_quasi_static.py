@@ -11,7 +11,7 @@ from lithofrac.config import find_case
 from lithofrac.run import simulate
 from lithofrac.scenes import make_mesh, make_problem
 
-pytestmark = pytest.mark.validation
+pytestmark = [pytest.mark.validation, pytest.mark.slow]
 QUICK = Path(__file__).parents[2] / "configs" / "suite_quick.yaml"
 CASES = ("sandstone_triaxial_p10", "sandstone_plane_strain_k02_p10")
 SHORT = {"output.fields": 0, "loading.end_strain": 0.0095}  # past the peaks at 0.0070 to 0.0077
