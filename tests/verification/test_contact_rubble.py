@@ -61,11 +61,11 @@ def test_no_part_of_the_rubble_enters_another(friction):
 def test_rubble_that_is_left_alone_does_not_jam():
     """Impulses that only hold each other stay within reach of those that the nodes feel.
 
-    Without fading first guesses the largest pair comes to 750 times the largest force of a node
-    here, and pressure and friction book 7 J and -8 J against each other.
+    Without fading first guesses the largest pair comes to 45 times the largest force of a node
+    here.
     """
     size, n, strain = 0.02, 5, 1e-3
-    mesh = cut_all_edges(rectangle(n, n, size, size, jitter=0.25, seed=3))
+    mesh = cut_all_edges(rectangle(n, n, size, size, jitter=0.25, seed=1))
     x, y = mesh.nodes.T
     is_edge = (np.minimum(x, y) < 1e-9) | (np.maximum(x, y) > size - 1e-9)
     loads = (hold("x", np.flatnonzero(is_edge), 0), hold("y", np.flatnonzero(is_edge), 1))
@@ -74,7 +74,7 @@ def test_rubble_that_is_left_alone_does_not_jam():
     velocity[~is_edge] = 3.0 * np.random.default_rng(0).standard_normal((sum(~is_edge), 2))
     start = uniform_strain(mesh, -0.3 * strain, -strain)
     run.set_motion(start, velocity)
-    run.advance(10_000)
+    run.advance(4000)
     assert run.contact_statistics().lists == 1
     candidates = sum(map(len, contact_candidates(mesh, start)))
     impulses = run.save()[-2 * candidates :].reshape(-1, 2)  # a checkpoint ends with them
