@@ -51,7 +51,6 @@ module lithofrac_run_model
       real(wp), allocatable :: lowest_frequency(:)        !! (n_bodies) estimate [1/s]
       real(wp), allocatable :: alpha(:)                   !! (n_bodies) damping [1/s]
       type(affine_type), allocatable :: affine(:)         !! (n_bodies)
-      real(wp), allocatable :: origin(:, :)               !! (2, n_bodies) of its moments [m]
       real(wp), allocatable :: moments(:, :)              !! (n_moments, n_runs)
       real(wp), allocatable :: sums(:, :)                 !! (n_sums, n_runs + 1) last: by contact
       integer :: reference_step = -1                      !! step of the state below, -1: none
@@ -100,7 +99,6 @@ contains
       call set_mass(model)
       call set_time_step(model)
       call set_frequencies(model)
-      call set_origins(model)
    end subroutine new_model
 
    !> Crack band width of every element [m].
@@ -174,30 +172,6 @@ contains
          end associate
       end do
    end subroutine set_frequencies
-
-   !> Where the moments of each body are taken: at its centre if it lies far from the origin, or
-   !> squares of positions would drown the shape of the body in rounding.
-   !>
-   !> Choice: up to `near` of its size away a body keeps the origin, and with it its bits
-   !> (test_units).
-   subroutine set_origins(model)
-      type(model_type), intent(inout) :: model
-
-      real(wp), parameter :: near = 100.0_wp
-      real(wp) :: low(2), high(2)
-      integer :: body, k
-
-      allocate (model%origin(2, model%mesh%n_bodies), source=0.0_wp)
-      do body = 1, model%mesh%n_bodies
-         do k = 1, 2
-            low(k) = minval(model%mesh%nodes(k, :), model%mesh%body_of_node == body)
-            high(k) = maxval(model%mesh%nodes(k, :), model%mesh%body_of_node == body)
-         end do
-         if (maxval(abs([low, high])) > near*maxval(high - low)) then
-            model%origin(:, body) = 0.5_wp*(low + high)
-         end if
-      end do
-   end subroutine set_origins
 
    !> Prescribe one velocity component of some nodes.
    subroutine add_velocity(model, node, component, speed, ramp, status)

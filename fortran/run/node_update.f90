@@ -106,11 +106,9 @@ contains
    !>
    !> The drag takes the velocity of the half step before, so that its net force and moment
    !> vanish exactly; this lowers the stable step by alpha dt/4, far inside the safety factor.
-   pure subroutine update_affine(fields, nodes, origin, first, last, dt, drift, alpha, fit, sums, &
-         moments)
+   pure subroutine update_affine(fields, nodes, first, last, dt, drift, alpha, fit, sums, moments)
       type(fields_type), intent(inout) :: fields
       real(wp), intent(in) :: nodes(:, :)  !! (2, n_nodes) reference positions [m]
-      real(wp), intent(in) :: origin(2)    !! of the moments [m]
       integer, intent(in) :: first
       integer, intent(in) :: last
       real(wp), intent(in) :: dt
@@ -148,17 +146,16 @@ contains
             power_before = power_before + (drag(1)*before(1) + drag(2)*before(2))
             power_after = power_after + (drag(1)*after(1) + drag(2)*after(2))
          end do
-         moments = sum_moments(fields, nodes, origin, first, last, dt)
+         moments = sum_moments(fields, nodes, first, last, dt)
          if (drift) u(:, first:last) = u(:, first:last) + dt*v(:, first:last)
       end associate
       sums = [kinetic, power_before, power_after]
    end subroutine update_affine
 
    !> Moments of a run of nodes at the positions that its velocities lead to.
-   pure function sum_moments(fields, nodes, origin, first, last, dt) result(moments)
+   pure function sum_moments(fields, nodes, first, last, dt) result(moments)
       type(fields_type), intent(in) :: fields
       real(wp), intent(in) :: nodes(:, :)
-      real(wp), intent(in) :: origin(2)    !! of the moments [m]
       integer, intent(in) :: first
       integer, intent(in) :: last
       real(wp), intent(in) :: dt
@@ -175,8 +172,8 @@ contains
          m = fields%fit_mass(node)
          vx = fields%v(1, node)
          vy = fields%v(2, node)
-         x = (nodes(1, node) - origin(1)) + (fields%u(1, node) + dt*vx)
-         y = (nodes(2, node) - origin(2)) + (fields%u(2, node) + dt*vy)
+         x = nodes(1, node) + (fields%u(1, node) + dt*vx)
+         y = nodes(2, node) + (fields%u(2, node) + dt*vy)
          s1 = s1 + m
          s2 = s2 + m*vx
          s3 = s3 + m*vy

@@ -13,7 +13,7 @@ module lithofrac_run_step
    use lithofrac_mechanics_loads, only: apply_pressure, apply_velocity, work_after, work_before
    use lithofrac_run_contact_step, only: bring_masses, book_contact, close_contacts, &
       note_velocities
-   use lithofrac_run_damping, only: fit_affine, n_moments, rayleigh_frequency
+   use lithofrac_run_damping, only: fit_affine, rayleigh_frequency
    use lithofrac_run_insert_cracks, only: insert_cracks
    use lithofrac_run_model, only: model_type
    use lithofrac_run_node_update, only: sum_moments, update_affine, update_ground, &
@@ -55,7 +55,8 @@ contains
       model%fields%v = model%fields%v - 0.5_wp*model%dt*model%fields%inverse_mass &
          *(model%fields%external - model%fields%internal)
       do run = 1, model%blocks%n_runs
-         model%moments(:, run) = moments_of(model, run, 0.0_wp)
+         model%moments(:, run) = sum_moments(model%fields, model%mesh%nodes, &
+            model%blocks%first_node(run), model%blocks%first_node(run + 1) - 1, 0.0_wp)
       end do
       call set_damping(model)
       if (model%contact%on) call note_velocities(model)
@@ -245,7 +246,6 @@ contains
       end do
       do body = 1, model%mesh%n_bodies
          model%affine(body) = fit_affine(sums(:, body))
-         model%affine(body)%centre = model%affine(body)%centre + model%origin(:, body)
       end do
    end subroutine set_damping
 
@@ -299,9 +299,8 @@ contains
       case (no_damping)
          call update_plain(model%fields, first, last, model%dt, drift, model%sums(:, run))
       case (relative_to_affine)
-         call update_affine(model%fields, model%mesh%nodes, model%origin(:, body), first, last, &
-            model%dt, drift, model%alpha(body), model%affine(body), model%sums(:, run), &
-            model%moments(:, run))
+         call update_affine(model%fields, model%mesh%nodes, first, last, model%dt, drift, &
+            model%alpha(body), model%affine(body), model%sums(:, run), model%moments(:, run))
       case default
          call update_ground(model%fields, first, last, model%dt, drift, model%alpha(body), &
             model%sums(:, run))
@@ -326,22 +325,9 @@ contains
       integer, intent(in) :: run
 
       if (model%settings%damping /= relative_to_affine) return
-      model%moments(:, run) = moments_of(model, run, model%dt)
+      model%moments(:, run) = sum_moments(model%fields, model%mesh%nodes, &
+         model%blocks%first_node(run), model%blocks%first_node(run + 1) - 1, model%dt)
    end subroutine sum_run
-
-   !> Moments of a run of nodes at the positions that its velocities lead to in `dt`.
-   function moments_of(model, run, dt) result(moments)
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: run
-      real(wp), intent(in) :: dt
-      real(wp) :: moments(n_moments)
-
-      associate (first => model%blocks%first_node(run), &
-            last => model%blocks%first_node(run + 1) - 1)
-         moments = sum_moments(model%fields, model%mesh%nodes, &
-            model%origin(:, model%mesh%body_of_node(first)), first, last, dt)
-      end associate
-   end function moments_of
 
    !> Contact at time 0, where a given displacement may have made parts overlap.
    subroutine start_contact(model, status)
