@@ -396,3 +396,4 @@ rule page:
 
 
 include: "pywrap/rules/regression.smk"
+include: "pywrap/rules/stability.smk"

@@ -33,6 +33,7 @@ from lithofrac.plots import (
     sandstone,
     single_element,
     size_effect,
+    stability,
     stiffness,
     style,
     variants,
@@ -57,6 +58,7 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "size_effect": size_effect.figure,
     "punch_patterns": punch_patterns.figure,
     "variants": variants.figure,
+    "stability": stability.figure,
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "single_element": tables.single_element,
