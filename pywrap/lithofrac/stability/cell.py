@@ -35,8 +35,8 @@ class Limits:
 
 
 USUAL = Limits()
-CRACKS = Limits(penetration=5e-4)  # also of bodies cut into pieces that stay together
-RUBBLE = Limits(residual=1e-5, penetration=5e-4, contact_work=(-0.2, 1e-3))  # flies freely
+CRACKS = Limits(penetration=5e-4, contact_work=(-0.2, 1e-3))  # pieces collide
+RUBBLE = Limits(residual=1e-5, penetration=5e-4, contact_work=(-0.2, 1e-3))  # and fly freely
 
 
 @dataclass(frozen=True)
