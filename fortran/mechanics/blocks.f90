@@ -21,6 +21,7 @@ module lithofrac_mechanics_blocks
       integer, allocatable :: node(:)            !! (places) ascending within a block
       integer, allocatable :: place(:, :, :)     !! (width, 3, n_chunks) place of a corner
       real(wp), allocatable :: buffer(:, :)      !! (2, places) element forces [N]
+      real(wp), allocatable :: chord(:)          !! (n_blocks) `chord_work` of the step [J]
       integer :: n_runs = 0                      !! runs of nodes of one body
       integer, allocatable :: first_node(:)      !! (n_runs + 1)
       integer, allocatable :: first_source(:)    !! (n_runs + 1) into `source`
@@ -52,7 +53,7 @@ contains
       end do
       blocks%first_place(blocks%n_blocks + 1) = n + 1
       blocks%node = node(:n)
-      allocate (blocks%buffer(2, n), source=0.0_wp)
+      allocate (blocks%buffer(2, n), blocks%chord(blocks%n_blocks), source=0.0_wp)
       call cut_runs(blocks, mesh)
       call find_sources(blocks)
    end subroutine new_blocks

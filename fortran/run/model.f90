@@ -30,6 +30,8 @@ module lithofrac_run_model
    real(wp), parameter :: alike = 10.0_wp    !! ratio of densities that contact hardly notices
    real(wp), parameter :: finest = 0.01_wp   !! tolerance for any ratio, over the usual one
 
+   real(wp), parameter :: fast = 2.0e-4_wp   !! speed over that of pressure waves: turns count
+
    type :: model_type
       type(mesh_type) :: mesh
       type(chunks_type) :: chunks
@@ -49,6 +51,8 @@ module lithofrac_run_model
       real(wp) :: dt = 0.0_wp                             !! [s]
       real(wp) :: critical = 0.0_wp                       !! smallest exact element limit [s]
       integer :: critical_element = 0
+      real(wp) :: fast_energy = 0.0_wp                    !! kinetic, above it turns are booked [J]
+      logical :: is_fast = .false.                        !! they are in this step
       integer :: step = 0                                 !! fields are at time step*dt
       logical :: started = .false.                        !! forces of the state are known
       real(wp), allocatable :: lowest_frequency(:)        !! (n_bodies) estimate [1/s]
@@ -102,6 +106,7 @@ contains
       call set_mass(model)
       call set_time_step(model)
       call set_frequencies(model)
+      call set_fast_energy(model)
    end subroutine new_model
 
    !> Crack band width of every element [m].
@@ -155,6 +160,24 @@ contains
       end do
       model%dt = model%settings%time_step_factor*model%critical
    end subroutine set_time_step
+
+   !> Kinetic energy of the body that has least, at a speed that is fast.
+   subroutine set_fast_energy(model)
+      type(model_type), intent(inout) :: model
+
+      real(wp) :: modulus(model%mesh%n_bodies), energy(model%mesh%n_bodies)
+      integer :: chunk
+
+      modulus = model%rocks%lame + 2.0_wp*model%rocks%shear
+      energy = 0.0_wp
+      do chunk = 1, model%chunks%n_chunks
+         associate (body => model%chunks%body(chunk))
+            energy(body) = energy(body) + 0.5_wp*fast**2*modulus(body) &
+               *sum(model%chunks%volume(:, chunk))
+         end associate
+      end do
+      model%fast_energy = minval(energy)
+   end subroutine set_fast_energy
 
    !> Lowest frequency of a bar as long as the body, held at one end: a floor of the quotient.
    subroutine set_frequencies(model)

@@ -68,6 +68,7 @@ contains
          if (status%code /= ok) return
       end if
       model%started = .true.
+      model%is_fast = kinetic_energy(model) > model%fast_energy
       model%ledger%initial = kinetic_energy(model) + sum(internal_energy(model))
       call check_finite(model, status)
    end subroutine start
@@ -151,11 +152,19 @@ contains
 
       associate (blocks => model%blocks)
          blocks%buffer(:, blocks%first_place(block):blocks%first_place(block + 1) - 1) = 0.0_wp
+         blocks%chord(block) = 0.0_wp
       end associate
       do chunk = model%blocks%first_chunk(block), model%blocks%first_chunk(block + 1) - 1
-         call chunk_force(model%chunks, chunk, model%rocks(model%chunks%body(chunk)), &
-            model%fields, merge(model%dt, 0.0_wp, model%started), model%state, &
-            model%blocks%place(:, :, chunk), model%blocks%buffer, failure)
+         associate (blocks => model%blocks, rock => model%rocks(model%chunks%body(chunk)))
+            if (model%is_fast) then
+               call chunk_force(model%chunks, chunk, rock, model%fields, model%dt, model%state, &
+                  blocks%place(:, :, chunk), blocks%buffer, failure, blocks%chord(block))
+            else
+               call chunk_force(model%chunks, chunk, rock, model%fields, &
+                  merge(model%dt, 0.0_wp, model%started), model%state, &
+                  blocks%place(:, :, chunk), blocks%buffer, failure)
+            end if
+         end associate
       end do
    end subroutine block_force
 
@@ -171,6 +180,8 @@ contains
          if (model%step > 0) ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(2, :))
          ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(3, :))
          if (model%fracture%on) call book_fracture(model)
+         if (model%is_fast) ledger%turning = ledger%turning - sum(model%blocks%chord)
+         model%is_fast = sum(model%sums(1, :)) > model%fast_energy
       end associate
       if (model%contact%on) then
          call book_contact(model)

@@ -238,10 +238,10 @@ contains
    end subroutine run_clock
 
    !> The ledger: kinetic, elastic, compressive, fracture, external, damping [J], residual
-   !> (relative), initial, contact, friction, insertion, relump, reset [J].
+   !> (relative), initial, contact, friction, insertion, relump, reset, turning [J].
    subroutine run_energy(run, values, code, message)
       integer(c_int), intent(in) :: run
-      real(c_double), intent(out) :: values(13)
+      real(c_double), intent(out) :: values(14)
       integer(c_int), intent(out) :: code
       character(len=256), intent(out) :: message
 

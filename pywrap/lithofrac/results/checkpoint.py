@@ -12,7 +12,7 @@ from lithofrac.errors import CheckpointError
 from lithofrac.problem import Problem
 from lithofrac.results.files import write_whole
 
-FORMAT = 3  # raise it whenever the meaning of a stored number changes
+FORMAT = 4  # raise it whenever the meaning of a stored number changes
 NAME, PREVIOUS = "checkpoint.npz", "checkpoint_previous.npz"
 
 

@@ -259,7 +259,7 @@ class _Eye:
 def left_over(energy: Energy) -> float:
     """What the two sides of the ledger differ by [J]."""
     outside = energy.external + energy.damping + energy.contact + energy.friction
-    outside += energy.insertion + energy.relump
+    outside += energy.insertion + energy.relump + energy.turning
     return energy.kinetic + energy.internal - energy.initial - outside
 
 
