@@ -30,10 +30,12 @@ module lithofrac_run_model
    real(wp), parameter :: alike = 10.0_wp    !! ratio of densities that contact hardly notices
    real(wp), parameter :: finest = 0.01_wp   !! tolerance for any ratio, over the usual one
 
+   real(wp), parameter :: far = 100.0_wp     !! from the origin, over the size of the model
    real(wp), parameter :: fast = 2.0e-4_wp   !! speed over that of pressure waves: turns count
 
    type :: model_type
-      type(mesh_type) :: mesh
+      type(mesh_type) :: mesh                             !! positions are relative to `origin`
+      real(wp) :: origin(2) = 0.0_wp                      !! [m]
       type(chunks_type) :: chunks
       type(blocks_type) :: blocks
       type(rock_type), allocatable :: rocks(:)            !! (n_bodies)
@@ -90,6 +92,9 @@ contains
          call set_failure(status, bad_input, "model: a radius is negative")
          return
       end if
+      model%origin = origin_of(nodes, axisymmetric)
+      if (any(abs(model%origin) > 0.0_wp)) model%mesh%nodes = nodes &
+         - spread(model%origin, 2, size(nodes, 2))
       model%rocks = rocks
       model%settings = settings
       call new_chunks(model%chunks, model%mesh, axisymmetric, &
@@ -108,6 +113,23 @@ contains
       call set_frequencies(model)
       call set_fast_energy(model)
    end subroutine new_model
+
+   !> Where positions are counted from [m]: the middle of a model that stands far away, else 0.
+   !>
+   !> Squares of positions, as the fit of the damping sums them, would lose its shape.
+   pure function origin_of(nodes, axisymmetric) result(origin)
+      real(wp), intent(in) :: nodes(:, :)        !! (2, n_nodes) [m]
+      logical, intent(in) :: axisymmetric        !! a radius stays what it is
+      real(wp) :: origin(2)
+
+      real(wp) :: low(2), high(2)
+
+      low = minval(nodes, dim=2)
+      high = maxval(nodes, dim=2)
+      origin = 0.5_wp*(low + high)
+      where (abs(origin) <= far*maxval(high - low)) origin = 0.0_wp
+      if (axisymmetric) origin(1) = 0.0_wp
+   end function origin_of
 
    !> Crack band width of every element [m].
    pure function band_widths(mesh, factor) result(width)
@@ -264,7 +286,8 @@ contains
       end if
       call new_contact(model%contact, model%mesh, friction, min(tolerance, &
          needed_tolerance(model%rocks)), status)
-      if (status%code == ok) call refuse_overlap(model%contact%surfaces, model%mesh, status)
+      if (status%code == ok) call refuse_overlap(model%contact%surfaces, model%mesh, &
+         model%origin, status)
    end subroutine add_contact
 
    !> Tolerance of contact that bodies of these densities ask for, over the usual one.

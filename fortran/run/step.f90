@@ -353,7 +353,7 @@ contains
 
       associate (surfaces => model%contact%surfaces)
          surfaces%u = model%fields%u(:, surfaces%node)
-         call refuse_overlap(surfaces, model%mesh, status)
+         call refuse_overlap(surfaces, model%mesh, model%origin, status)
       end associate
       if (status%code /= ok) return
       call bring_masses(model)

@@ -23,20 +23,25 @@ class Limits:
     gain : largest internal energy over the energy put in. A mode at 0.95 of its limit stores ten
         times its energy at the turning point, so that less is no sign of instability
     speed : largest speed of a node over that of the fastest pressure waves
-    penetration : deepest over the shortest boundary edge
+    penetration : deepest of a pair at any time, over the shortest boundary edge h
+    overlap : deepest node inside an element at the end, over h; all nodes against all elements
     contact_work : (least, most) work of contact pressure over the energy put in
+    turning : what the finite step itself gains or loses as elements turn, over the energy put in
     """
 
     residual: float = 1e-6
     gain: float = 10.0
     speed: float = 0.2
     penetration: float = 1e-5
+    overlap: float = 5e-4
     contact_work: tuple[float, float] = (-1e-2, 1e-2)
+    turning: float = 1e-3
 
 
 USUAL = Limits()
 CRACKS = Limits(penetration=5e-4, contact_work=(-0.2, 1e-3))  # pieces collide
-RUBBLE = Limits(residual=1e-5, penetration=5e-4, contact_work=(-0.2, 1e-3))  # and fly freely
+LARGE = Limits(penetration=5e-4)  # faces turn and slide far
+RUBBLE = Limits(residual=1e-5, penetration=5e-3, contact_work=(-0.2, 1e-3))  # flies freely
 
 
 @dataclass(frozen=True)

@@ -11,13 +11,15 @@ import numpy as np
 from lithofrac.config.errors import ConfigError
 from lithofrac.core import Energy, Run
 from lithofrac.errors import CoreError
+from lithofrac.kernels import boundary_of
 from lithofrac.stability.cell import Cell, Left, Limits, Refused, Sound, Stable, Trial
 
 RECORDS = 100  # looks at a run on its way
-RUNAWAY = 20.0  # internal energy over that put in, of a run that has broken
+RUNAWAY = 100.0  # internal energy over that put in, of a run that has broken
 LOST = 1e-2  # residual of a ledger of a run that has broken
-HIGHEST = 2.0  # time step factor of the search
-RESOLUTION = 0.01  # of the margin
+HIGHEST = 32.0  # time step factor of the search
+RESOLUTION = 0.01  # of the margin, relative
+MOST_LOOKED_AT = 5000  # elements of a mesh in which all overlaps are looked for
 COLUMNS = (
     "family",
     "extreme",
@@ -28,7 +30,9 @@ COLUMNS = (
     "internal_over_put_in",
     "speed_over_wave",
     "penetration_over_h",
+    "overlap_over_h",
     "contact_work",
+    "turning",
     "cracks",
     "elements",
     "steps",
@@ -45,7 +49,9 @@ class Seen:
     gain: float = 0.0
     speed: float = 0.0
     penetration: float = 0.0
+    overlap: float = 0.0
     contact_work: float = 0.0
+    turning: float = 0.0
     cracks: int = 0
     elements: int = 0
     steps: int = 0
@@ -100,7 +106,7 @@ def _sound(expected: Sound) -> dict:
 def _stable(expected: Stable) -> dict:
     try:
         trial = expected.make()
-        seen = run_trial(trial)
+        seen = run_trial(trial, closely=True)
     except (CoreError, ConfigError) as error:  # refused though it should run
         return {"verdict": "broken", "note": str(error)}
     faults = [seen.ended] if seen.broke else faults_of(seen, expected.limits)
@@ -110,7 +116,9 @@ def _stable(expected: Stable) -> dict:
         "internal_over_put_in": seen.gain,
         "speed_over_wave": seen.speed,
         "penetration_over_h": seen.penetration if trial.problem.contact else None,
+        "overlap_over_h": seen.overlap if trial.problem.contact else None,
         "contact_work": seen.contact_work if trial.problem.contact else None,
+        "turning": seen.turning,
         "cracks": seen.cracks if trial.problem.fracture else None,
         "elements": seen.elements,
         "steps": seen.steps,
@@ -155,10 +163,22 @@ def faults_of(seen: Seen, limits: Limits) -> list[str]:
                 seen.penetration <= limits.penetration,
             ),
             (
+                "overlap at the end over h",
+                seen.overlap,
+                f"at most {limits.overlap:g}",
+                seen.overlap <= limits.overlap,
+            ),
+            (
                 "work of contact over the energy put in",
                 seen.contact_work,
                 f"{least:g} to {most:g}",
                 least <= seen.contact_work <= most,
+            ),
+            (
+                "energy of turns over that put in",
+                seen.turning,
+                f"at most {limits.turning:g}",
+                abs(seen.turning) <= limits.turning,
             ),
         )
         if not good
@@ -168,13 +188,15 @@ def faults_of(seen: Seen, limits: Limits) -> list[str]:
 def find_margin(trial: Trial) -> tuple[float, str]:
     """Smallest time step factor at which a trial breaks, to `RESOLUTION`, and how it ends there.
 
-    The factor of the trial is known to be good. `HIGHEST` where nothing breaks below it.
+    The factor of the trial is known to be good. Doubled until it breaks, then bisected. `HIGHEST`
+    where nothing breaks up to it.
     """
-    low, high = trial.problem.time_step_factor, HIGHEST
-    ended = run_trial(trial, high).ended
-    if not ended:
-        return high, f"stable at {high:g}, not tried beyond"
-    while high - low > RESOLUTION:
+    low, high = trial.problem.time_step_factor, 2.0
+    while not (ended := run_trial(trial, high).ended):
+        if high >= HIGHEST:
+            return high, f"stable at {high:g}, not tried beyond"
+        low, high = high, 2.0 * high
+    while high - low > RESOLUTION * low:
         middle = 0.5 * (low + high)
         found = run_trial(trial, middle)
         if found.broke:
@@ -184,12 +206,13 @@ def find_margin(trial: Trial) -> tuple[float, str]:
     return high, f"breaks: {ended}"
 
 
-def run_trial(trial: Trial, factor: float | None = None) -> Seen:
+def run_trial(trial: Trial, factor: float | None = None, closely: bool = False) -> Seen:
     """Run a trial to its end, or until it breaks.
 
     Parameters
     ----------
     factor : time step factor, default that of the problem
+    closely : look for overlaps and ask the trial for its note at the end
 
     Raises
     ------
@@ -215,8 +238,10 @@ def run_trial(trial: Trial, factor: float | None = None) -> Seen:
     except CoreError as error:
         seen.ended = str(error)
     seen.steps = run.step
-    if not seen.broke:
+    if closely and not seen.broke:
         run.check()
+        if problem.contact is not None and seen.elements <= MOST_LOOKED_AT:
+            seen.overlap = deepest_overlap(run)
         if trial.watch is not None:
             seen.note = trial.watch(run)
     return seen
@@ -230,7 +255,7 @@ class _Eye:
         self.seen = Seen(elements=len(run.problem.mesh.triangles))
         self.wave = max(map(wave_speed, run.problem.materials))  # [m/s]
         self.put_in = self.scale = 0.0  # largest so far [J]
-        self.left_over = self.contact = 0.0  # worst so far [J]
+        self.left_over = self.contact = self.turning = 0.0  # worst so far [J]
 
     def look(self) -> None:
         """Note the worst so far; say when there is no use in going on."""
@@ -243,9 +268,11 @@ class _Eye:
         self.scale = max(self.scale, self.put_in, abs(energy.external), energy.internal)
         self.left_over = max(self.left_over, abs(left_over(energy)))
         self.contact = max(self.contact, energy.contact, key=abs)
+        self.turning = max(self.turning, energy.turning, key=abs)
         if self.put_in > 0.0:
             seen.gain = max(seen.gain, energy.internal / self.put_in)
             seen.contact_work = self.contact / self.put_in
+            seen.turning = self.turning / self.put_in
         if self.scale > 0.0:
             seen.residual = self.left_over / self.scale
         if not np.isfinite(energy.residual):
@@ -254,6 +281,24 @@ class _Eye:
             seen.ended = f"step {run.step}: internal energy {seen.gain:.0f} times that put in"
         elif not seen.residual <= LOST:
             seen.ended = f"step {run.step}: energy residual {seen.residual:.1e}"
+
+
+def deepest_overlap(run: Run) -> float:
+    """Deepest node inside an element that it does not belong to, over the shortest edge, by
+    looking at all nodes and all elements."""
+    nodes, triangles, _, alive = run.mesh()
+    x = nodes + run.nodes()[0]
+    deepest = 0.0
+    for triangle in triangles[alive]:
+        corner = x[triangle]
+        inside = ((x > corner.min(axis=0)) & (x < corner.max(axis=0))).all(axis=1)
+        inside[triangle] = False
+        along = np.roll(corner, -1, axis=0) - corner
+        along /= np.hypot(*along.T)[:, None]
+        arm = x[inside][:, None] - corner
+        left_of = along[:, 0] * arm[..., 1] - along[:, 1] * arm[..., 0]
+        deepest = max(deepest, float(left_of.min(axis=1).max(initial=0.0)))
+    return deepest / boundary_of(run.problem.mesh)[1]
 
 
 def left_over(energy: Energy) -> float:

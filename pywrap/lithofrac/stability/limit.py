@@ -27,7 +27,25 @@ from lithofrac.stability.models import (
 )
 
 FACTORS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.925, 0.95, 0.96, 0.97, 0.98, 0.99)
-FACTORS += (1.0, 1.005, 1.01, 1.02, 1.03, 1.04, 1.05, 1.075, 1.1, 1.125, 1.15, 1.2, 1.25, 1.3, 1.4)
+FACTORS += (
+    1.0,
+    1.005,
+    1.01,
+    1.02,
+    1.03,
+    1.04,
+    1.05,
+    1.075,
+    1.1,
+    1.125,
+    1.15,
+    1.2,
+    1.25,
+    1.3,
+    1.4,
+    1.45,
+)
+FACTORS += (1.475, 1.5, 1.525, 1.55, 1.6, 1.65)
 BLOW = 1.0  # velocity gradient of the blow, m/s over the size of the mesh
 STRAIN = -1e-3  # that presses parts together
 ONE = "one element"

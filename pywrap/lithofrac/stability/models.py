@@ -43,6 +43,12 @@ def block(width: float = WIDTH, height: float = HEIGHT, size: float = SIZE) -> M
     return rectangle(width, height, size, structured=True, seed=MESH)
 
 
+def least_fracture_energy() -> float:
+    """Gf of the largest element of the block at the limit of a unique return [J/m2]."""
+    width = float(ROCK.band_width_of(block().areas().max()))
+    return ROCK.fracture_energy * width / ROCK.band_width_limit
+
+
 def shifted(mesh: Mesh, x: float, y: float) -> Mesh:
     """The mesh somewhere else."""
     return replace(mesh, nodes=mesh.nodes + [x, y])
@@ -187,4 +193,3 @@ def stacked(
         VelocityLoad("slide", top, 0, speed, Ramp(0.4 * time, 0.2 * time)),
     )
     return replace(problem, velocity_loads=loads)
-

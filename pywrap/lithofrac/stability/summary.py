@@ -13,7 +13,7 @@ def by_family(table: pd.DataFrame) -> pd.DataFrame:
         row |= {name: int(verdicts.get(name, 0)) for name in ("stable", "refused", "n/a")}
         row["others"] = len(own) - sum(row[name] for name in ("stable", "refused", "n/a"))
         row["least_margin"] = stable["margin"].min()
-        for name in ("energy_residual", "speed_over_wave", "penetration_over_h"):
+        for name in ("energy_residual", "speed_over_wave", "penetration_over_h", "overlap_over_h"):
             row[f"largest_{name}"] = stable[name].max()
         rows.append(row)
     return pd.DataFrame(rows)

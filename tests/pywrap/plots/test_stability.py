@@ -43,5 +43,5 @@ def test_margins_stand_in_the_row_of_their_family(tables, data_folder):
 
 
 def test_other_inputs_are_refused(tables, data_folder):
-    with pytest.raises(DataError, match="expected stability_limit.csv and stability.csv"):
+    with pytest.raises(DataError, match=r"expected stability_limit\.csv and stability\.csv"):
         stability.figure(tables[:1], data_folder)

@@ -44,9 +44,7 @@ def stiffness() -> list[Cell]:
         found += [
             cell(words, CONTINUUM, lambda s=soft, m=mesh: Trial(pressed(m, ELASTIC, s))),
             cell(f"{words}, soft below", CONTACT, lambda s=soft: _slid(ELASTIC, s)),
-            cell(
-                words, CRACKED, lambda s=soft, m=torn: Trial(cracking(m, ROCK, s)), limits=CRACKS
-            ),
+            cell(words, CRACKED, lambda s=soft, m=torn: Trial(cracking(m, ROCK, s)), limits=CRACKS),
         ]
         if ratio > 1.0:
             found.append(cell(f"{words}, soft above", CONTACT, lambda s=soft: _slid(s, ELASTIC)))

@@ -6,7 +6,16 @@ import numpy as np
 
 from lithofrac.core import Run
 from lithofrac.problem import Contact, Fracture, Mesh, Problem, VelocityLoad
-from lithofrac.stability.cell import CONTACT, CONTINUUM, CRACKED, CRACKS, Cell, Limits, Stable, Trial
+from lithofrac.stability.cell import (
+    CONTACT,
+    CONTINUUM,
+    CRACKED,
+    CRACKS,
+    Cell,
+    Limits,
+    Stable,
+    Trial,
+)
 from lithofrac.stability.models import (
     ELASTIC,
     FACTOR,
@@ -24,6 +33,7 @@ from lithofrac.stability.models import (
 
 FACTORS = (1e-9, 1e-6, 1e6, 1e9)
 OFFSET = 1e6  # lengths of the block
+EARLY = 1e-3  # strain
 MILLION = 1_000_000
 
 
@@ -120,7 +130,12 @@ def offsets() -> list[Cell]:
 
 
 def _far(mesh: str) -> Trial:
-    base = bases()[mesh]
+    """Before the peak: beyond it, what coordinates have lost of the mesh picks other cracks."""
+    base = {
+        CONTINUUM: lambda: pressed(block(), ROCK, strain=EARLY),
+        CONTACT: lambda: stacked(ELASTIC, ELASTIC),
+        CRACKED: lambda: cracking(cracked(block()), ROCK, strain=EARLY),
+    }[mesh]()
     return Trial(far_away(base, OFFSET * WIDTH), watch=lambda run: _compared(run, base, 1.0))
 
 

@@ -16,11 +16,11 @@ from lithofrac.stability.cell import (
     Trial,
 )
 from lithofrac.stability.models import (
-    ROCK,
     STEPS,
     block,
     cracked,
     cracking,
+    least_fracture_energy,
     pressed,
     rock,
     stacked,
@@ -79,7 +79,9 @@ def poisson() -> list[Cell]:
         # the more incompressible, the more steps a shear wave takes: less strain in them
         strain = 0.012 if value < 0.49 else 1e-3
         found += on_all("poisson", f"nu {value:g}", rock(poisson_ratio=value), strain)
-    return found + refused("poisson", "nu 0.5", r"poisson_ratio = 0\.5: .*below 0\.5", poisson_ratio=0.5)
+    return found + refused(
+        "poisson", "nu 0.5", r"poisson_ratio = 0\.5: .*below 0\.5", poisson_ratio=0.5
+    )
 
 
 def angles() -> list[Cell]:
@@ -93,13 +95,16 @@ def angles() -> list[Cell]:
     ):
         found += on_all("friction angle", words, material, 0.012)
     return found + refused(
-        "friction angle", "phi 90 deg", "friction_angle_deg.*expected a number below 90", **_row(90.0)
+        "friction angle",
+        "phi 90 deg",
+        "friction_angle_deg.*expected a number below 90",
+        **_row(90.0),
     )
 
 
 def _row(friction: float) -> dict:
     names = ("plastic_strain", "cohesion_MPa", "dilation_angle_deg")
-    return dict.fromkeys(names, [0.0]) | {"friction_angle_deg": [friction]}
+    return {name: [0.0] for name in names} | {"friction_angle_deg": [friction]}
 
 
 def strengths() -> list[Cell]:
@@ -113,14 +118,6 @@ def strengths() -> list[Cell]:
         ("Gf 1e6 J/m2", rock(fracture_energy_J_m2=1e6)),
     ):
         found += on_all("strength", words, material, 0.008)
-    found += refused(
-        "strength", "Gf 1e-6 J/m2", "above which softening", fracture_energy_J_m2=1e-6
-    )
+    found += refused("strength", "Gf 1e-6 J/m2", "above which softening", fracture_energy_J_m2=1e-6)
     found += refused("strength", "Gf 0", "fracture_energy_J_m2", fracture_energy_J_m2=0.0)
     return found + refused("strength", "ft 0", "tensile_strength_MPa", tensile_strength_MPa=0.0)
-
-
-def least_fracture_energy() -> float:
-    """Gf of the largest element of the block at the limit of a unique return [J/m2]."""
-    width = float(ROCK.band_width_of(block().areas().max()))
-    return ROCK.fracture_energy * width / ROCK.band_width_limit
