@@ -90,7 +90,6 @@ contains
       type(status_type), intent(out) :: status
 
       integer :: i
-      logical :: fast(1)
 
       call visitor%visit_count(model%step)
       if (model%fracture%on) call visit_mesh(visitor, model, status)
@@ -132,9 +131,7 @@ contains
       call visitor%visit_scalar(model%ledger%relump)
       call visitor%visit_scalar(model%ledger%reset)
       call visitor%visit_scalar(model%ledger%turning)
-      fast = [model%is_fast]
-      call visitor%visit_flags(fast)
-      model%is_fast = fast(1)
+      call visitor%visit_count(model%fast_until)
       call visitor%visit_scalar(model%ledger%scale)
       do i = 1, size(model%velocities)
          call visitor%visit(size(model%velocities(i)%before), model%velocities(i)%before)

@@ -31,7 +31,7 @@ module lithofrac_run_model
    real(wp), parameter :: finest = 0.01_wp   !! tolerance for any ratio, over the usual one
 
    real(wp), parameter :: far = 100.0_wp     !! from the origin, over the size of the model
-   real(wp), parameter :: fast = 2.0e-4_wp   !! speed over that of pressure waves: turns count
+   real(wp), parameter :: fast = 1.0e-4_wp   !! speed over that of pressure waves: turns count
 
    type :: model_type
       type(mesh_type) :: mesh                             !! positions are relative to `origin`
@@ -54,7 +54,7 @@ module lithofrac_run_model
       real(wp) :: critical = 0.0_wp                       !! smallest exact element limit [s]
       integer :: critical_element = 0
       real(wp) :: fast_energy = 0.0_wp                    !! kinetic, above it turns are booked [J]
-      logical :: is_fast = .false.                        !! they are in this step
+      integer :: fast_until = -1                          !! step up to which they are
       integer :: step = 0                                 !! fields are at time step*dt
       logical :: started = .false.                        !! forces of the state are known
       real(wp), allocatable :: lowest_frequency(:)        !! (n_bodies) estimate [1/s]

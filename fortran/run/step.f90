@@ -29,6 +29,7 @@ module lithofrac_run_step
 
    integer, parameter :: quotient_interval = 100      !! steps between Rayleigh quotients
    integer, parameter :: quotient_length = 10         !! steps that a quotient looks at
+   integer, parameter :: booked_steps = 100           !! after a fast one
    real(wp), parameter :: largest_alpha_dt = 0.05_wp  !! keeps the lagged drag stable
 
 contains
@@ -68,7 +69,7 @@ contains
          if (status%code /= ok) return
       end if
       model%started = .true.
-      model%is_fast = kinetic_energy(model) > model%fast_energy
+      call look_for_speed(model)
       model%ledger%initial = kinetic_energy(model) + sum(internal_energy(model))
       call check_finite(model, status)
    end subroutine start
@@ -156,7 +157,7 @@ contains
       end associate
       do chunk = model%blocks%first_chunk(block), model%blocks%first_chunk(block + 1) - 1
          associate (blocks => model%blocks, rock => model%rocks(model%chunks%body(chunk)))
-            if (model%is_fast) then
+            if (model%step <= model%fast_until) then
                call chunk_force(model%chunks, chunk, rock, model%fields, model%dt, model%state, &
                   blocks%place(:, :, chunk), blocks%buffer, failure, blocks%chord(block))
             else
@@ -180,9 +181,9 @@ contains
          if (model%step > 0) ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(2, :))
          ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(3, :))
          if (model%fracture%on) call book_fracture(model)
-         if (model%is_fast) ledger%turning = ledger%turning - sum(model%blocks%chord)
-         model%is_fast = sum(model%sums(1, :)) > model%fast_energy
+         ledger%turning = ledger%turning - sum(model%blocks%chord)
       end associate
+      call look_for_speed(model)
       if (model%contact%on) then
          call book_contact(model)
          call note_velocities(model)
@@ -191,6 +192,15 @@ contains
       call load_boundary(model)
       call set_damping(model)
    end subroutine finish_step
+
+   !> Book turns for some time from every step that is fast: a body that rings stands still
+   !> twice in a period.
+   subroutine look_for_speed(model)
+      type(model_type), intent(inout) :: model
+
+      if (abs(sum(model%sums(1, :))) > model%fast_energy) model%fast_until = model%step &
+         + booked_steps
+   end subroutine look_for_speed
 
    subroutine load_boundary(model)
       type(model_type), intent(inout) :: model

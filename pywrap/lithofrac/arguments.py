@@ -16,9 +16,8 @@ def parser() -> argparse.ArgumentParser:
         prog="lithofrac",
         description="Rock fracture benchmarks: continuum with a crack band, explicit in time.",
         epilog="example: lithofrac run sandstone_triaxial_p10 --out out/p10\n"
-        "exit codes: 0 good, 2 bad input, 3 numerical failure, 4 numbers moved,\n"
-        "            130 interrupted",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        "exit codes: 0 good, 2 bad input, 3 failure, 4 numbers moved, 130 interrupted",
+        formatter_class=_Wide,
     )
     version = f"lithofrac {lithofrac.__version__}, native: {str(NATIVE).lower()}"
     found.add_argument("--version", action="version", version=version)
@@ -30,6 +29,14 @@ def parser() -> argparse.ArgumentParser:
     ):  # fmt: skip
         add(commands)
     return found
+
+
+class _Wide(argparse.RawDescriptionHelpFormatter):
+    """Room for the longest command beside its help; argparse forgets that commands are indented."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog)
+        self._action_max_length = len("    references")
 
 
 def _command(commands, name: str, summary: str, example: str) -> argparse.ArgumentParser:

@@ -95,7 +95,7 @@ def test_wedges_between_a_wall_and_their_neighbours_do_not_jam():
     failed at once.
     """
     size, n, strain = 6e-3, 6, 2e-3
-    mesh = cut_all_edges(rectangle(n, n, size, size, jitter=0.2, seed=2))
+    mesh = cut_all_edges(rectangle(n, n, size, size, jitter=0.1, seed=2))
     x, y = mesh.nodes.T
     sides = np.flatnonzero((x < 1e-9) | (x > size - 1e-9))
     low, top = np.flatnonzero(y < 1e-9), np.flatnonzero(y > size - 1e-9)
