@@ -110,9 +110,11 @@ contains
       real(wp) :: work
 
       integer :: i
-      real(wp) :: c, s, versine, turned, stretched, ratio
+      real(wp) :: c, s, versine, turned, stretched, skew0, skew1, mixed, ratio
 
       work = 0.0_wp
+      !$omp simd private(c, s, versine, turned, stretched, skew0, skew1, mixed, ratio) &
+      !$omp& reduction(+:work)
       do i = 1, n
          s = rotation1(i, 2)*rotation0(i, 1) - rotation1(i, 1)*rotation0(i, 2)
          c = rotation1(i, 1)*rotation0(i, 1) + rotation1(i, 2)*rotation0(i, 2)
@@ -121,21 +123,20 @@ contains
             + (stress0(i, 1)*strain1(i, 1) - stress1(i, 1)*strain0(i, 1)) &
             + (stress0(i, 2)*strain1(i, 2) - stress1(i, 2)*strain0(i, 2)) &
             + (stress0(i, 4)*strain1(i, 4) - stress1(i, 4)*strain0(i, 4))
+         ! T : (J U) of both states, and of each stress with the other stretch
+         skew0 = 0.5_wp*(stress0(i, 2) - stress0(i, 1))*strain0(i, 4) &
+            + stress0(i, 4)*(strain0(i, 1) - strain0(i, 2))
+         skew1 = 0.5_wp*(stress1(i, 2) - stress1(i, 1))*strain1(i, 4) &
+            + stress1(i, 4)*(strain1(i, 1) - strain1(i, 2))
+         mixed = 0.5_wp*((stress0(i, 2) - stress0(i, 1))*strain1(i, 4) &
+            + (stress1(i, 2) - stress1(i, 1))*strain0(i, 4)) &
+            + stress0(i, 4)*(strain1(i, 1) - strain1(i, 2)) &
+            + stress1(i, 4)*(strain0(i, 1) - strain0(i, 2))
          ratio = rotation0(i, 3)/rotation1(i, 3)
-         turned = skew(stress0(i, :), strain1(i, :)) + skew(stress1(i, :), strain0(i, :)) &
-            - skew(stress0(i, :), strain0(i, :))*ratio - skew(stress1(i, :), strain1(i, :))/ratio
+         turned = mixed - skew0*ratio - skew1/ratio
          work = work + 0.5_wp*volume(i)*(s*turned - versine*stretched)
       end do
    end function chord_work
-
-   !> T : (J U) with J = [[0, -1], [1, 0]].
-   pure function skew(stress, strain)
-      real(wp), intent(in) :: stress(4)
-      real(wp), intent(in) :: strain(4)
-      real(wp) :: skew
-
-      skew = 0.5_wp*(stress(2) - stress(1))*strain(4) + stress(4)*(strain(1) - strain(2))
-   end function skew
 
    !> Strain and stress of a chunk as it is, without any update.
    subroutine chunk_stress(chunks, chunk, rock, fields, state, strain, stress)

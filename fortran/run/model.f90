@@ -31,7 +31,7 @@ module lithofrac_run_model
    real(wp), parameter :: finest = 0.01_wp   !! tolerance for any ratio, over the usual one
 
    real(wp), parameter :: far = 100.0_wp     !! from the origin, over the size of the model
-   real(wp), parameter :: fast = 1.0e-4_wp   !! speed over that of pressure waves: turns count
+   real(wp), parameter :: fast = 3.0e-5_wp   !! speed over that of pressure waves: turns count
 
    type :: model_type
       type(mesh_type) :: mesh                             !! positions are relative to `origin`
