@@ -10,11 +10,11 @@ module lithofrac_mechanics_internal_force
    use lithofrac_mechanics_chunks, only: chunks_type, width
    use lithofrac_mechanics_fields, only: fields_type, inelastic_type
    use lithofrac_mechanics_kinematics, only: elastic_stress, gather, gather_previous, &
-      hoop_strain, nodal_forces, scatter, scatter_hoop, strains
+      hoop_strain, nodal_forces, scatter, scatter_hoop, strains, virgin_forces
    implicit none
    private
 
-   public :: chord_work, chunk_force, chunk_stress, element_force, failure_type
+   public :: chunk_force, chunk_stress, element_force, failure_type
 
    !> What went wrong in an element, for words where step and time are known.
    type :: failure_type
@@ -29,7 +29,7 @@ module lithofrac_mechanics_internal_force
 contains
 
    !> Update the material of a chunk and add its nodal forces to the buffer of its block.
-   subroutine chunk_force(chunks, chunk, rock, fields, dt, state, place, buffer, failure, chord)
+   subroutine chunk_force(chunks, chunk, rock, fields, dt, state, place, buffer, failure)
       type(chunks_type), intent(in) :: chunks
       integer, intent(in) :: chunk
       type(rock_type), intent(in) :: rock
@@ -39,104 +39,30 @@ contains
       integer, intent(in) :: place(width, 3)               !! of the corners in `buffer`
       real(wp), intent(inout), contiguous :: buffer(:, :)  !! (2, places) [N]
       type(failure_type), intent(inout) :: failure
-      real(wp), intent(inout), optional :: chord            !! `chord_work` is added [J]
 
       real(wp) :: strain(width, 4), rotation(width, 3), stress(width, 4), force(width, 4)
-      real(wp) :: old_strain(width, 4), old_rotation(width, 3), old_stress(width, 4)
+      real(wp) :: du(width, 4)
+      logical :: done
 
-      if (present(chord)) call look_back(chunks, chunk, rock, fields, dt, state, old_strain, &
-         old_rotation, old_stress)
-      call predict(chunks, chunk, rock, fields, state, strain, rotation, stress)
-      if (rock%yields) call return_flagged(chunks, chunk, rock, fields, dt, state, stress, failure)
-      if (present(chord)) chord = chord + chord_work(width, chunks%volume(:, chunk), old_strain, &
-         old_rotation, old_stress, strain, rotation, stress)
-      associate (volume => chunks%volume(:, chunk))
-         call nodal_forces(width, chunks%gradient(:, :, chunk), volume, strain, rotation, stress, &
-            force)
+      associate (gradient => chunks%gradient(:, :, chunk), volume => chunks%volume(:, chunk))
+         call displacements(chunks, chunk, fields, du, strain(:, 3))
+         done = .false.
+         if (.not. state%touched(chunk)) then
+            call virgin_forces(rock, gradient, volume, du, strain(:, 3), force, stress(:, 3), done)
+            done = done .or. .not. rock%yields
+         end if
+         if (.not. done) then
+            call predict(chunks, chunk, rock, du, state, strain, rotation, stress)
+            if (rock%yields) then
+               call return_flagged(chunks, chunk, rock, fields, dt, state, stress, failure)
+            end if
+            call nodal_forces(width, gradient, volume, strain, rotation, stress, force)
+         end if
          call scatter(place, force, buffer)
          if (chunks%axisymmetric) call scatter_hoop(place, chunks%hoop(:, chunk), volume, &
             stress(:, 3), buffer)
       end associate
    end subroutine chunk_force
-
-   !> Strain, rotation and stress of a chunk one step earlier: from u - dt v.
-   subroutine look_back(chunks, chunk, rock, fields, dt, state, strain, rotation, stress)
-      type(chunks_type), intent(in) :: chunks
-      integer, intent(in) :: chunk
-      type(rock_type), intent(in) :: rock
-      type(fields_type), intent(in) :: fields
-      real(wp), intent(in) :: dt                  !! step that led here [s]
-      type(inelastic_type), intent(in) :: state   !! of then
-      real(wp), intent(out) :: strain(width, 4)
-      real(wp), intent(out) :: rotation(width, 3)
-      real(wp), intent(out) :: stress(width, 4)   !! unrotated [Pa]
-
-      real(wp) :: du(width, 4), dv(width, 4), rate(width)
-
-      associate (node => chunks%node(:, :, chunk), hoop => chunks%hoop(:, chunk))
-         call gather(node, fields%u, du)
-         call gather(node, fields%v, dv)
-         strain(:, 3) = 0.0_wp
-         if (chunks%axisymmetric) then
-            call hoop_strain(node, fields%u, hoop, strain(:, 3))
-            call hoop_strain(node, fields%v, hoop, rate)
-            strain(:, 3) = strain(:, 3) - dt*rate
-         end if
-      end associate
-      call strains(width, chunks%gradient(:, :, chunk), du - dt*dv, strain, rotation)
-      call elastic_stress(width, rock%lame, rock%shear, strain, state%strain(:, :, chunk), stress)
-   end subroutine look_back
-
-   !> Work that nodal forces do in a step beyond that of the mean stress on the strain [J].
-   !>
-   !> Nodes move along chords while the element turns. With F = R U before (0) and after (1), the
-   !> angle a from R0 to R1 and forces from P = R (T - (b/tr U) J), b = T : (J U):
-   !>
-   !>    1/2 (P0 + P1) : (F1 - F0) - 1/2 (T0 + T1) : (U1 - U0)
-   !>       = 1/2 sin a (T0 : JU1 + T1 : JU0 - b0 tr U1/tr U0 - b1 tr U0/tr U1)
-   !>         - 1/2 (1 - cos a) (T0 : U1 - T1 : U0)
-   !>
-   !> Central differences have that much less energy after the step; it is of third order in it.
-   pure function chord_work(n, volume, strain0, rotation0, stress0, strain1, rotation1, stress1) &
-      result(work)
-      integer, intent(in) :: n                !! lanes
-      real(wp), intent(in) :: volume(n)       !! [m3] per metre or per radian
-      real(wp), intent(in) :: strain0(n, 4)   !! U - I, engineering shear
-      real(wp), intent(in) :: rotation0(n, 3) !! cos, sin, 1/tr U
-      real(wp), intent(in) :: stress0(n, 4)   !! unrotated [Pa]
-      real(wp), intent(in) :: strain1(n, 4)
-      real(wp), intent(in) :: rotation1(n, 3)
-      real(wp), intent(in) :: stress1(n, 4)
-      real(wp) :: work
-
-      integer :: i
-      real(wp) :: c, s, versine, turned, stretched, skew0, skew1, mixed, ratio
-
-      work = 0.0_wp
-      !$omp simd private(c, s, versine, turned, stretched, skew0, skew1, mixed, ratio) &
-      !$omp& reduction(+:work)
-      do i = 1, n
-         s = rotation1(i, 2)*rotation0(i, 1) - rotation1(i, 1)*rotation0(i, 2)
-         c = rotation1(i, 1)*rotation0(i, 1) + rotation1(i, 2)*rotation0(i, 2)
-         versine = merge(s*s/(1.0_wp + abs(c)), 1.0_wp - c, c > 0.0_wp)
-         stretched = (stress0(i, 1) - stress1(i, 1)) + (stress0(i, 2) - stress1(i, 2)) &
-            + (stress0(i, 1)*strain1(i, 1) - stress1(i, 1)*strain0(i, 1)) &
-            + (stress0(i, 2)*strain1(i, 2) - stress1(i, 2)*strain0(i, 2)) &
-            + (stress0(i, 4)*strain1(i, 4) - stress1(i, 4)*strain0(i, 4))
-         ! T : (J U) of both states, and of each stress with the other stretch
-         skew0 = 0.5_wp*(stress0(i, 2) - stress0(i, 1))*strain0(i, 4) &
-            + stress0(i, 4)*(strain0(i, 1) - strain0(i, 2))
-         skew1 = 0.5_wp*(stress1(i, 2) - stress1(i, 1))*strain1(i, 4) &
-            + stress1(i, 4)*(strain1(i, 1) - strain1(i, 2))
-         mixed = 0.5_wp*((stress0(i, 2) - stress0(i, 1))*strain1(i, 4) &
-            + (stress1(i, 2) - stress1(i, 1))*strain0(i, 4)) &
-            + stress0(i, 4)*(strain1(i, 1) - strain1(i, 2)) &
-            + stress1(i, 4)*(strain0(i, 1) - strain0(i, 2))
-         ratio = rotation0(i, 3)/rotation1(i, 3)
-         turned = mixed - skew0*ratio - skew1/ratio
-         work = work + 0.5_wp*volume(i)*(s*turned - versine*stretched)
-      end do
-   end function chord_work
 
    !> Strain and stress of a chunk as it is, without any update.
    subroutine chunk_stress(chunks, chunk, rock, fields, state, strain, stress)
@@ -148,9 +74,10 @@ contains
       real(wp), intent(out) :: strain(width, 4)   !! U - I, unrotated, engineering shear
       real(wp), intent(out) :: stress(width, 4)   !! unrotated [Pa]
 
-      real(wp) :: rotation(width, 3)
+      real(wp) :: du(width, 4), rotation(width, 3)
 
-      call predict(chunks, chunk, rock, fields, state, strain, rotation, stress)
+      call displacements(chunks, chunk, fields, du, strain(:, 3))
+      call predict(chunks, chunk, rock, du, state, strain, rotation, stress)
    end subroutine chunk_stress
 
    !> Forces of one element on its corners as it is, without any update; not axisymmetric.
@@ -184,24 +111,33 @@ contains
       force(:, 1) = -(corners(1:2) + corners(3:4))
    end function element_force
 
-   subroutine predict(chunks, chunk, rock, fields, state, strain, rotation, stress)
+   !> Displacements of the corners relative to corner 1, and the strain out of the plane.
+   subroutine displacements(chunks, chunk, fields, du, strain_zz)
       type(chunks_type), intent(in) :: chunks
       integer, intent(in) :: chunk
-      type(rock_type), intent(in) :: rock
       type(fields_type), intent(in) :: fields
-      type(inelastic_type), intent(in) :: state
-      real(wp), intent(out) :: strain(width, 4)
-      real(wp), intent(out) :: rotation(width, 3)
-      real(wp), intent(out) :: stress(width, 4)
-
-      real(wp) :: du(width, 4)
+      real(wp), intent(out) :: du(width, 4)              !! [m]
+      real(wp), intent(out) :: strain_zz(width)
 
       call gather(chunks%node(:, :, chunk), fields%u, du)
       if (chunks%axisymmetric) then
-         call hoop_strain(chunks%node(:, :, chunk), fields%u, chunks%hoop(:, chunk), strain(:, 3))
+         call hoop_strain(chunks%node(:, :, chunk), fields%u, chunks%hoop(:, chunk), strain_zz)
       else
-         strain(:, 3) = 0.0_wp
+         strain_zz = 0.0_wp
       end if
+   end subroutine displacements
+
+   !> Strain, rotation and trial stress of a chunk.
+   subroutine predict(chunks, chunk, rock, du, state, strain, rotation, stress)
+      type(chunks_type), intent(in) :: chunks
+      integer, intent(in) :: chunk
+      type(rock_type), intent(in) :: rock
+      real(wp), intent(in) :: du(width, 4)
+      type(inelastic_type), intent(in) :: state
+      real(wp), intent(inout) :: strain(width, 4)        !! zz is given
+      real(wp), intent(out) :: rotation(width, 3)
+      real(wp), intent(out) :: stress(width, 4)
+
       call strains(width, chunks%gradient(:, :, chunk), du, strain, rotation)
       if (state%touched(chunk)) then
          call elastic_stress(width, rock%lame, rock%shear, strain, state%strain(:, :, chunk), &

@@ -183,7 +183,8 @@ contains
       model%dt = model%settings%time_step_factor*model%critical
    end subroutine set_time_step
 
-   !> Kinetic energy of the body that has least, at a speed that is fast.
+   !> Kinetic energy of the body that has least, at a speed that is fast: slower motion is not
+   !> worth the look at every element twice a step that its turns take.
    subroutine set_fast_energy(model)
       type(model_type), intent(inout) :: model
 

@@ -83,8 +83,14 @@ class Run:
         return last_frame(self.folder)
 
     def is_rock(self, frame: Frame) -> np.ndarray:
-        """Which elements of a frame of this run are of the specimen, (m,) bool."""
+        """Which elements of a frame of this run are of the specimen, (m,) bool.
+
+        In a geometry of one's own: those of the material of the case.
+        """
         names = Mesh.load(self.folder / "mesh.npz").body_names
+        if self.test == "gmsh_file":
+            others = self.case["scene"].get("materials", {})
+            return np.isin(frame.body, [i for i, name in enumerate(names) if name not in others])
         return frame.body == names.index(ROCK)
 
     @cached_property
@@ -126,3 +132,17 @@ def find_runs(paths: list[Path]) -> list[Run]:
     paths = [Path(path) for path in paths if not is_bench(path)]
     folders = [path if path.is_dir() else path.parent for path in paths]
     return [Run(folder) for folder in dict.fromkeys(folders)]
+
+
+def only_run(paths: list[Path], kind: str) -> Run:
+    """The run of folders or files of which there must be one, for a plot of a kind.
+
+    Raises
+    ------
+    DataError
+        When there are several, or none.
+    """
+    runs = find_runs(paths)
+    if len(runs) != 1:
+        raise DataError(f"plot {kind}: {len(runs)} runs, expected one")
+    return runs[0]

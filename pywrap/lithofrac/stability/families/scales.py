@@ -169,7 +169,7 @@ def _ringing() -> Trial:
     problem = Problem(mesh, False, (ELASTIC,), (), (), 1.0, time_step_factor=FACTOR)
     problem = timed(problem, MILLION)
     middle = mesh.nodes.mean(axis=0)
-    velocity = 100.0 * (mesh.nodes - middle) @ np.array([[1.0, 0.3], [0.3, -0.7]])
+    velocity = 1000.0 * (mesh.nodes - middle) @ np.array([[1.0, 0.3], [0.3, -0.7]])
     return Trial(problem, 0.0 * velocity, velocity)
 
 
