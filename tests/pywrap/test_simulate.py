@@ -85,7 +85,7 @@ def test_probes_and_ledger_have_a_row_a_record(done):
     assert set(probes["probe"]) == {"corner", "middle"}
     inside = energy[["kinetic_J", "elastic_J", "compressive_dissipation_J"]].sum(axis=1)
     inside += energy["fracture_dissipation_J"]
-    outside = energy["external_J"] + energy["damping_J"]
+    outside = energy["external_J"] + energy["damping_J"] + energy["turning_J"]
     np.testing.assert_allclose(inside - outside, energy["residual_J"], atol=1e-9)
 
 
