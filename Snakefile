@@ -184,7 +184,7 @@ rule simulate:
         "Mesh and run {wildcards.case}"
     shell:
         "lithofrac run {wildcards.case} --suite {SUITE} --out {OUT}/runs/{wildcards.case}"
-        " --threads {threads} > {log} 2>&1"
+        " --threads {threads} --resume-if-possible > {log} 2>&1"
 
 
 rule bench:

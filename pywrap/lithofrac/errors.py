@@ -10,6 +10,10 @@ class CoreError(RuntimeError):
     """The core refused a call; the message says why and where."""
 
 
+class GuardError(CoreError):
+    """A guard has stopped the run; the message says where, why, and what to try."""
+
+
 class CheckpointError(CoreError):
     """There is no checkpoint that this run can go on from."""
 

@@ -2,8 +2,8 @@
 from snakemake.exceptions import WorkflowError
 
 # What is run, whatever suite is asked for: by the installed build each case, and for new
-# references also by a build that gives the same bits on every x86-64, with two more meshes of cases
-# that crack.
+# references also by a build that gives the same bits on every x86-64 since 2013, with two more meshes of
+# cases that crack.
 QUICK_SUITE = "configs/suite_quick.yaml"
 QUICK = load_suite(QUICK_SUITE)
 REALISED = [

@@ -57,7 +57,7 @@ rule simulate:
         "Mesh and run {wildcards.case}"
     shell:
         "{params.program:q} run {input:q} --out runs/{wildcards.case}"
-        " --threads {threads} > {log:q} 2>&1"
+        " --threads {threads} --resume-if-possible > {log:q} 2>&1"
 
 
 rule collect:
