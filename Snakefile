@@ -417,3 +417,4 @@ rule page:
 
 
 include: "pywrap/rules/regression.smk"
+include: "pywrap/rules/stability.smk"

@@ -5,6 +5,8 @@ python3 tasks.py reproduce [--suite FILE] [...]  run the suite, write out/report
                                                  further arguments go to snakemake
 python3 tasks.py test [--all]                    linters, tests on three builds, line coverage;
                                                  --all adds the tests marked slow
+python3 tasks.py mutants [NAME ...]              break the code on purpose, see which test notices;
+                                                 writes reports/mutants.md
 python3 tasks.py setup                           only install what is missing and build
 python3 tasks.py benchmark                       speed of the core, kept in out/benchmark.json
 python3 tasks.py portable                        a second build beside the installed one, for
@@ -485,6 +487,14 @@ def test(everything):
     sys.exit(1 if wrong else 0)
 
 
+def mutants(extra):
+    """Mistakes made on purpose in copies of the tree: does a test notice each of them?"""
+    make_environment()
+    with stage("mutants"):
+        code = call(BIN / "python", "tests/reliability/mutation.py", *extra)
+    sys.exit(code)
+
+
 def main(arguments):
     refuse_old_python(sys.version_info)
     task, extra = (arguments or ["help"])[0], arguments[1:]
@@ -496,6 +506,8 @@ def main(arguments):
         test(everything=bool(extra))
     elif task == "portable" and not extra:
         portable()
+    elif task == "mutants":
+        mutants(extra)
     elif task == "benchmark":
         benchmark(extra)
     elif task in ("help", "-h", "--help"):

@@ -226,6 +226,16 @@ def test_portable_build_stands_beside_the_installed_one(tasks, calls):
 
 
 @pytest.mark.no_core
+def test_names_of_mutants_reach_their_script(tasks, calls, monkeypatch):
+    monkeypatch.setattr(tasks, "make_environment", lambda: None)
+    with pytest.raises(SystemExit) as left:
+        tasks.main(["mutants", "friction-sign"])
+    assert left.value.code == 0
+    [[_, *words]] = calls
+    assert words == ["tests/reliability/mutation.py", "friction-sign"]
+
+
+@pytest.mark.no_core
 def test_run_of_tests_without_counts_has_failed(tasks):
     assert tasks.counted("release") == (0, 1, 0)
 
@@ -242,5 +252,5 @@ def test_unknown_task_or_option_is_refused_before_anything_is_done(arguments):
 def test_help_names_every_task():
     done = run_front("help")
     assert done.returncode == 0
-    for task in ("reproduce", "test", "setup", "benchmark", "portable"):
+    for task in ("reproduce", "test", "mutants", "setup", "benchmark", "portable"):
         assert f"tasks.py {task}" in done.stdout

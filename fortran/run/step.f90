@@ -11,6 +11,7 @@ module lithofrac_run_step
    use lithofrac_mechanics_blocks, only: assemble
    use lithofrac_mechanics_internal_force, only: chunk_force, failure_type
    use lithofrac_mechanics_loads, only: apply_pressure, apply_velocity, work_after, work_before
+   use lithofrac_mechanics_turns, only: chord_work, look, stretch_type
    use lithofrac_run_contact_step, only: bring_masses, book_contact, close_contacts, &
       note_velocities
    use lithofrac_run_damping, only: fit_affine, rayleigh_frequency
@@ -28,6 +29,8 @@ module lithofrac_run_step
 
    integer, parameter :: quotient_interval = 100      !! steps between Rayleigh quotients
    integer, parameter :: quotient_length = 10         !! steps that a quotient looks at
+   integer, parameter :: look_interval = 10           !! steps between looks at the speed
+   integer, parameter :: booked_steps = 100           !! after a fast one
    real(wp), parameter :: largest_alpha_dt = 0.05_wp  !! keeps the lagged drag stable
 
 contains
@@ -68,6 +71,7 @@ contains
          if (status%code /= ok) return
       end if
       model%started = .true.
+      model%fast_until = booked_steps
       model%ledger%initial = kinetic_energy(model) + sum(internal_energy(model))
       call check_state(model, status)
    end subroutine start
@@ -140,19 +144,32 @@ contains
       if (status%code == ok) call check_state(model, status)
    end subroutine advance
 
-   !> Element forces of one block of chunks.
+   !> Element forces of one block of chunks; in fast motion also the work of their turns.
    subroutine block_force(model, block, failure)
       type(model_type), intent(inout) :: model
       integer, intent(in) :: block
       type(failure_type), intent(inout) :: failure
 
+      type(stretch_type) :: before, after
+      logical :: is_fast
       integer :: chunk
 
-      do chunk = model%blocks%first_chunk(block), model%blocks%first_chunk(block + 1) - 1
-         call chunk_force(model%chunks, chunk, model%rocks(model%chunks%body(chunk)), &
-            model%fields, merge(model%dt, 0.0_wp, model%started), model%state, &
-            model%blocks%place(:, :, chunk), model%blocks%buffer, failure)
-      end do
+      is_fast = model%step <= model%fast_until
+      associate (blocks => model%blocks, chunks => model%chunks)
+         blocks%chord(block) = 0.0_wp
+         do chunk = blocks%first_chunk(block), blocks%first_chunk(block + 1) - 1
+            associate (rock => model%rocks(chunks%body(chunk)))
+               if (is_fast) call look(chunks, chunk, rock, model%fields, model%state, model%dt, &
+                  before)
+               call chunk_force(chunks, chunk, rock, model%fields, merge(model%dt, 0.0_wp, &
+                  model%started), model%state, blocks%place(:, :, chunk), blocks%buffer, failure)
+               if (.not. is_fast) cycle
+               call look(chunks, chunk, rock, model%fields, model%state, 0.0_wp, after)
+               blocks%chord(block) = blocks%chord(block) + chord_work(chunks%volume(:, chunk), &
+                  before, after)
+            end associate
+         end do
+      end associate
    end subroutine block_force
 
    !> Book the step that ends, then set the boundary and the damping of the next.
@@ -167,7 +184,9 @@ contains
          if (model%step > 0) ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(2, :))
          ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(3, :))
          if (model%fracture%on) call book_fracture(model)
+         ledger%turning = ledger%turning - sum(model%blocks%chord)
       end associate
+      call look_for_speed(model)
       if (model%contact%on) then
          call book_contact(model)
          call note_velocities(model)
@@ -176,6 +195,24 @@ contains
       call load_boundary(model)
       call set_damping(model)
    end subroutine finish_step
+
+   !> Book turns for some time from a step that is fast: a body that rings stands still twice in
+   !> a period. The first steps are booked in any case.
+   subroutine look_for_speed(model)
+      type(model_type), intent(inout) :: model
+
+      real(wp) :: energy
+      integer :: node
+
+      if (mod(model%step, look_interval) /= 0) return
+      energy = 0.0_wp
+      associate (mass => model%fields%mass, v => model%fields%v)
+         do node = 1, model%mesh%n_nodes
+            energy = energy + 0.5_wp*mass(node)*(v(1, node)*v(1, node) + v(2, node)*v(2, node))
+         end do
+      end associate
+      if (energy > model%fast_energy) model%fast_until = model%step + booked_steps
+   end subroutine look_for_speed
 
    subroutine load_boundary(model)
       type(model_type), intent(inout) :: model
@@ -338,7 +375,7 @@ contains
 
       associate (surfaces => model%contact%surfaces)
          surfaces%u = model%fields%u(:, surfaces%node)
-         call refuse_overlap(surfaces, model%mesh, status)
+         call refuse_overlap(surfaces, model%mesh, model%origin, status)
       end associate
       if (status%code /= ok) return
       call bring_masses(model)

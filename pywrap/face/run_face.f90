@@ -239,10 +239,10 @@ contains
    end subroutine run_clock
 
    !> The ledger: kinetic, elastic, compressive, fracture, external, damping [J], residual
-   !> (relative), initial, contact, friction, insertion, relump, reset [J].
+   !> (relative), initial, contact, friction, insertion, relump, reset, turning [J].
    subroutine run_energy(run, values, code, message)
       integer(c_int), intent(in) :: run
-      real(c_double), intent(out) :: values(13)
+      real(c_double), intent(out) :: values(14)
       integer(c_int), intent(out) :: code
       character(len=256), intent(out) :: message
 
@@ -359,7 +359,7 @@ contains
       call check_handle(run, code, message)
       if (code /= ok) return
       associate (model => slots(run)%model)
-         nodes = model%mesh%nodes(:, :n_nodes)
+         nodes = model%mesh%nodes(:, :n_nodes) + spread(model%origin, 2, n_nodes)
          triangles = model%mesh%triangles(:, :n_elements)
          body = model%mesh%body(:n_elements)
          if (model%fracture%on) alive = merge(1, 0, model%fracture%topology%alive(:n_elements))
@@ -410,7 +410,12 @@ contains
 
       record = 0.0_c_double
       call check_handle(run, code, message)
-      if (code == ok .and. n_edges > 0) record = slots(run)%model%fracture%record(:, :n_edges)
+      if (code /= ok .or. n_edges == 0) return
+      record = slots(run)%model%fracture%record(:, :n_edges)
+      associate (origin => slots(run)%model%origin)
+         record(3:4, :) = record(3:4, :) + spread(origin, 2, n_edges)
+         record(5:6, :) = record(5:6, :) + spread(origin, 2, n_edges)
+      end associate
    end subroutine run_cracks
 
    !> Fail in words where an invariant of a mesh that cracks is broken.

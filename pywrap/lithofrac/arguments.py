@@ -54,6 +54,7 @@ def parser() -> argparse.ArgumentParser:
         _fit,
         _compare,
         _references,
+        _stability,
     ):
         add(commands)
     return found
@@ -263,6 +264,19 @@ def _references(commands) -> None:
         "--twin", type=Path, nargs="+", required=True, metavar="RUN", help="runs of a native build"
     )
     one.add_argument("--why", required=True, metavar="TEXT", help="reason, kept with the numbers")
+
+
+def _stability(commands) -> None:
+    one = _command(
+        commands, "stability", "try the extremes of the model", "--only density --out out/tables"
+    )
+    one.add_argument("--out", type=_path, required=True, metavar="DIR", help="folder of the tables")
+    one.add_argument(
+        "--only", nargs="+", default=[], metavar="FAMILY", help="an unknown word lists all"
+    )
+    one.add_argument(
+        "--processes", type=_threads, default=os.cpu_count() or 1, metavar="N", help="default: all"
+    )
 
 
 def _finished_runs(one: argparse.ArgumentParser) -> None:

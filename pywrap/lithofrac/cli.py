@@ -280,6 +280,16 @@ def references(options: Namespace) -> int:
     return GOOD
 
 
+def stability(options: Namespace) -> int:
+    """Try the extremes of the model; says which cells of the matrix are not as they should be."""
+    from lithofrac.stability.matrix import make_matrix
+
+    bad = make_matrix(options.out, options.only, options.processes)
+    for line in bad:
+        print(f"lithofrac: {line}", file=sys.stderr)
+    return NUMERICAL_FAILURE if bad else GOOD
+
+
 COMMANDS = {
     "init": init,
     "check": check,
@@ -294,6 +304,7 @@ COMMANDS = {
     "fit": fit,
     "compare": compare,
     "references": references,
+    "stability": stability,
 }
 
 

@@ -66,6 +66,7 @@ class Energy:
     insertion: float  # work of the bonds that fade on new cracks
     relump: float  # kinetic energy lost as mass went to new nodes, <= 0
     reset: float  # fracture energy that elements may spend again; not part of the balance
+    turning: float  # given by elements that turn along chords: what the step itself gains
 
     @property
     def internal(self) -> float:

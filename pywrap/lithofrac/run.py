@@ -20,7 +20,7 @@ import lithofrac
 from lithofrac._build import NATIVE
 from lithofrac.analysis.crack_faces import find_faces
 from lithofrac.analysis.frames import MM, Frame
-from lithofrac.analysis.strength import first_peak
+from lithofrac.analysis.run_numbers import finite, peak, ratio, residual
 from lithofrac.config.cost import ELASTIC_RATE, YIELDING_RATE
 from lithofrac.core import Run
 from lithofrac.errors import CoreError
@@ -318,13 +318,13 @@ class _Session:
             "core_seconds": core,
             "wall_seconds": self.wall_seconds,
             "element_steps_per_core_second": elements * run.step / core,
-            "energy": {name: _finite(value) for name, value in last.items()},
-            "energy_residual": _residual(energy),
-            **_peak(history, energy),
-            "damping_over_external": _finite(
-                _ratio(-energy["damping_J"].iloc[-1], energy["external_J"].iloc[-1])
+            "energy": {name: finite(value) for name, value in last.items()},
+            "energy_residual": residual(energy),
+            **peak(history, energy),
+            "damping_over_external": finite(
+                ratio(-energy["damping_J"].iloc[-1], energy["external_J"].iloc[-1])
             ),
-            "max_plastic_strain": _finite(
+            "max_plastic_strain": finite(
                 run.elements(np.arange(sizes.elements)).plastic_strain.max()
             ),
             "cracks": sizes.cracks,
@@ -333,7 +333,7 @@ class _Session:
             "crack_fallbacks": sizes.fallbacks,
             "crack_nodes_without_way": sizes.closed,
             "most_resets_of_an_element": sizes.most_resets,
-            "max_penetration_over_h": _finite(contact.max_penetration_over_h),
+            "max_penetration_over_h": finite(contact.max_penetration_over_h),
             "contact_pairs_max": contact.pairs_max,
             "contact_sweeps_mean": contact.sweeps_mean,
             "contact_unconverged_steps": contact.unconverged_steps,
@@ -370,39 +370,3 @@ def _machine() -> str:
     models = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
     known = [platform.system(), platform.machine(), f"{os.cpu_count()} cores", *models[:1]]
     return ", ".join(part for part in known if part)
-
-
-def _peak(history, energy) -> dict:
-    """First peak of the axial stress (else the largest), kinetic over internal energy there."""
-    if "axial_stress_MPa" not in history:
-        return {"peak_stress_MPa": None, "peak_strain": None, "kinetic_ratio_at_peak": None}
-    stress = history["axial_stress_MPa"].to_numpy()
-    peak = first_peak(history["axial_strain"].to_numpy(), stress)
-    row = peak.index if peak is not None else int(np.nanargmax(stress))
-    entry = energy.iloc[row]
-    internal = (
-        entry["elastic_J"] + entry["compressive_dissipation_J"] + entry["fracture_dissipation_J"]
-    )
-    return {
-        "peak_stress_MPa": _finite(history["axial_stress_MPa"].iloc[row]),
-        "peak_strain": _finite(history["axial_strain"].iloc[row]),
-        "kinetic_ratio_at_peak": _finite(entry["kinetic_J"] / internal) if internal > 0 else None,
-    }
-
-
-def _residual(energy) -> float | None:
-    """Largest residual of the ledger over the largest energy that the run has seen."""
-    internal = energy["elastic_J"] + energy["compressive_dissipation_J"]
-    internal = internal + energy["fracture_dissipation_J"]
-    scale = max(internal.abs().max(), energy["external_J"].abs().max(), energy["kinetic_J"].max())
-    return _finite(energy["residual_J"].abs().max() / scale) if scale > 0.0 else 0.0
-
-
-def _ratio(part: float, whole: float) -> float:
-    """`part / whole`, 0 where there is no whole."""
-    return float(part / whole) if whole else 0.0
-
-
-def _finite(value: float) -> float | None:
-    """A JSON number, or null where there is none."""
-    return float(value) if math.isfinite(value) else None

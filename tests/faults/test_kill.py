@@ -99,7 +99,7 @@ sys.exit(cli.main(sys.argv[2:]))
 """
 LEFT = {
     "within a checkpoint": ".checkpoint.part.npz",
-    "within a frame": "fields/.frame_0003.part.vtu",
+    "within a frame": "fields/.*.part.vtu",
 }
 
 
@@ -120,7 +120,7 @@ def test_killed_at_a_point(cracking, unbroken, tmp_path, point):
     done = subprocess.run([sys.executable, "-c", DRIVER, point, *cracking.words(out)], timeout=300)
     assert done.returncode == -signal.SIGKILL
     if point in LEFT:
-        assert (out / LEFT[point]).exists()
+        assert list(out.glob(LEFT[point]))
     if point == "between two renames":
         assert not (out / "checkpoint.npz").exists()
         assert (out / "checkpoint_previous.npz").exists()
