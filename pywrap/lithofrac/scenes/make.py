@@ -16,6 +16,7 @@ from lithofrac.scenes import (
     single_element,
     triaxial,
 )
+from lithofrac.scenes._fit import misfit
 
 SCENES = {
     "single_element": single_element,
@@ -50,9 +51,12 @@ def make_problem(case: Case, mesh: Mesh) -> Problem:
     Raises
     ------
     ConfigError
-        When the largest element of the rock is above a limit of unique softening (eq. 16, or a
-        stretched hardening table).
+        When the mesh is of another case, or the largest element of the rock is above a limit of
+        unique softening (eq. 16, or a stretched hardening table).
     """
+    why = misfit(case, mesh)
+    if why:
+        raise ConfigError(why)
     material = case.material
     areas = mesh.areas()[mesh.body == mesh.body_names.index(ROCK)]
     width = float(material.band_width_of(areas.max()))
