@@ -42,6 +42,7 @@ OWN_FILES = (
 def main(arguments: list[str] | None = None) -> int:
     """Run one command; returns its exit code."""
     options = parser().parse_args(arguments)
+    _print_anything()
     try:
         return COMMANDS[options.command](options)
     except KeyboardInterrupt:
@@ -54,8 +55,10 @@ def main(arguments: list[str] | None = None) -> int:
         code = _exit_code(error)
         if code is None:
             raise
-        for line in str(error).splitlines():
-            print(f"lithofrac: {line}", file=sys.stderr)
+        from lithofrac.config.errors import printable
+
+        for line in (str(error) or "not enough memory").split("\n"):
+            print(f"lithofrac: {printable(line)}", file=sys.stderr)
         return code
 
 
@@ -64,7 +67,8 @@ def _exit_code(error: Exception) -> int | None:
     from lithofrac.config import ConfigError
 
     names = {base.__name__ for base in type(error).__mro__}
-    if isinstance(error, (ConfigError, OSError)) or names & {"DataError", "CheckpointError"}:
+    known = {"DataError", "CheckpointError", "FileError"}
+    if isinstance(error, (ConfigError, OSError, MemoryError)) or names & known:
         return BAD_INPUT
     return NUMERICAL_FAILURE if names & {"CoreError", "MeshError"} else None
 
@@ -76,22 +80,29 @@ def check(options: Namespace) -> int:
 
     names = options.case or list(load_suite(options.suite or default_suite()).names)
     if len(names) == 1:
-        _print_plan(names[0], _case(names[0], options))
+        case = _case(names[0], options)
+        _print_plan(names[0], case)
+        _warn(names[0], case)
         return GOOD
     for name in names:
-        print(f"{name}: {_case(name, options).title}")
+        case = _case(name, options)
+        print(f"{name}: {case.title}")
+        _warn(name, case)
     print(f"{len(names)} cases are right")
     return GOOD
 
 
 def mesh(options: Namespace) -> int:
     """Mesh a case and save it."""
+    from lithofrac.config import ConfigError
+    from lithofrac.results.files import write_whole
     from lithofrac.scenes import make_mesh
 
+    if options.out.exists() and not options.out.is_file():
+        raise ConfigError(f"--out {options.out}: is no regular file, expected a file to write")
     made = make_mesh(_case(options.case, options), options.seed)
     options.out.parent.mkdir(parents=True, exist_ok=True)
-    with open(options.out, "wb") as file:  # a handle, so that no suffix is added
-        made.save(file)
+    write_whole(options.out, lambda part: _save(made, part))
     print(f"{options.out}: {len(made.triangles)} elements, {len(made.nodes)} nodes")
     return GOOD
 
@@ -108,6 +119,7 @@ def run(options: Namespace) -> int:
         _find_checkpoint(options.out, problem)
     name = Path(options.case).stem if options.case.endswith((".yaml", ".yml")) else options.case
     _prepare(options, case, made)
+    warnings = _warn(name, case, quiet=options.quiet)
     progress = Progress(name)
     before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
     try:
@@ -117,7 +129,12 @@ def run(options: Namespace) -> int:
             threads=options.threads,
             resume=options.resume,
             progress=None if options.quiet else progress,
-            meta={"case": name, "title": case.title, "commit": _commit()},
+            meta={
+                "case": name,
+                "title": case.title,
+                "commit": _commit(),
+                "input_warnings": warnings,
+            },
         )
     except KeyboardInterrupt:
         print(
@@ -235,6 +252,28 @@ COMMANDS = {
 }
 
 
+def _print_anything() -> None:
+    """A name that the terminal cannot show is shown by its codes; it stops nothing."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _warn(name: str, case: Case, quiet: bool = False) -> list[str]:
+    """Print and return what is doubtful about a case."""
+    from lithofrac.config.doubts import doubts
+
+    found = doubts(case)
+    for sentence in [] if quiet else found:
+        print(f"lithofrac: warning: {name}: {sentence}", file=sys.stderr)
+    return found
+
+
+def _save(mesh: Mesh, path: Path) -> None:
+    with open(path, "wb") as file:  # a handle, so that no suffix is added
+        mesh.save(file)
+
+
 def _present(paths: list[Path]) -> list[Path]:
     """Paths that are there.
 
@@ -269,10 +308,7 @@ def _mesh_of(case: Case, options: Namespace) -> Mesh:
         return make_mesh(case)
     if options.resume and not path.exists():
         raise ConfigError(f"{path}: no such file, there is no run to resume in {options.out}")
-    try:
-        return Mesh.load(path)
-    except (ValueError, KeyError, EOFError) as error:
-        raise ConfigError(f"{path}: expected a mesh of `lithofrac mesh` ({error})") from None
+    return Mesh.load(path)
 
 
 def _accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
@@ -292,6 +328,12 @@ def _accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
         raise ConfigError(
             f"{name}: loading.{key} = {getattr(case.loading, key):g}: the run takes "
             f"{expected['steps']:.3g} steps, expected at most {MOST_STEPS}"
+        )
+    elements, steps = expected["elements"], expected["steps"]
+    if elements * steps > case.budget_element_steps:
+        raise ConfigError(
+            f"{name}: budget_element_steps = {case.budget_element_steps:g}: the run takes "
+            f"{elements} elements times {steps} steps, {elements * steps:.3g}"
         )
     return problem, expected
 

@@ -12,22 +12,6 @@ TRIAXIAL = Path("configs/cases/sandstone_triaxial.yaml").read_text()
 ROCK = Path("configs/materials/sandstone.yaml").read_text()
 
 
-@pytest.fixture
-def refused(tmp_path, capsys):
-    """refused(path, *options): what `lithofrac run` says, after checking that it did nothing."""
-
-    def attempt(path, *options):
-        out = tmp_path / "results"
-        before = sorted(tmp_path.rglob("*"))
-        assert main(["run", str(path), "--out", str(out), *options]) == 2
-        assert sorted(tmp_path.rglob("*")) == before
-        said = capsys.readouterr()
-        assert said.out == ""
-        return said.err
-
-    return attempt
-
-
 def changed(text: str, old: str, new: str) -> str:
     assert old in text
     return text.replace(old, new, 1)
