@@ -1,0 +1,225 @@
+"""One process that tries mutants: seeds come in on standard input, verdicts go out as JSON.
+
+A verdict is `result` (checked and run), `large` (right, but more than is run here), `refused`
+(exit code 2) or `stopped` (exit code 3), each with sentences; or a failure: `traceback`, `nan`,
+`words` (no clear sentence), `written` (files where none should be). Its parent adds `hang` and
+`crash`. The folder of the right meshes is the only argument.
+"""
+
+import contextlib
+import io
+import json
+import os
+import resource
+import shutil
+import sys
+import tempfile
+import traceback
+from dataclasses import replace
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pandas as pd
+from fuzz_bases import CASES, MATERIALS
+from fuzz_mutants import Mutant, mutant
+
+from lithofrac import cli
+from lithofrac.config import load_case
+from lithofrac.config.element_count import element_count, platen_count
+from lithofrac.data import load_curves, measured_strength
+from lithofrac.data.axes import load_axes
+from lithofrac.scenes import make_mesh
+
+GOOD = ("result", "large", "refused", "stopped")
+MOST_ELEMENTS, MOST_STEPS = 20_000, 100
+MOST_LETTERS = 1500  # of a sentence: one may list all keys of a section
+MOST_MEMORY = 6_000_000_000
+WITH_PLATENS = ("plane_strain", "punch", "brazilian", "hole")
+
+
+class TooLarge(Exception):
+    """More elements than are run here."""
+
+
+class Failure(Exception):
+    """Arguments: kind of the verdict, what was seen."""
+
+
+def limit_runs() -> None:
+    """Let the command line mesh and run small cases alone, and take few steps."""
+    case_of, accepted = cli._case, cli._accepted
+
+    def small_case(*arguments):
+        case = case_of(*arguments)
+        count = element_count(case.scene)
+        if case.platens is not None and case.scene.kind in WITH_PLATENS:
+            count += platen_count(case.scene, case.platens)
+        if count > MOST_ELEMENTS:
+            raise TooLarge
+        return case
+
+    def short(*arguments):
+        problem, expected = accepted(*arguments)
+        if len(problem.mesh.triangles) > MOST_ELEMENTS:
+            raise TooLarge
+        end = min(problem.end_time, (MOST_STEPS - 0.5) * expected["time_step_s"])
+        few = {"records": min(problem.records, 20), "fields": min(problem.fields, 2)}
+        return replace(problem, end_time=end, **few), expected
+
+    cli._case, cli._accepted = small_case, short
+
+
+def write_meshes(folder: str) -> None:
+    """The right mesh of every case of `fuzz_bases`, as NAME.npz."""
+    with tempfile.TemporaryDirectory() as name:
+        for file, text in MATERIALS.items():
+            (Path(name) / file).write_text(text)
+        for case, text in CASES.items():
+            (Path(name) / "case.yaml").write_text(text)
+            make_mesh(load_case(Path(name) / "case.yaml")).save(Path(folder, f"{case}.npz"))
+
+
+def verdict(found: Mutant) -> dict:
+    """Try a mutant in a folder of its own."""
+    home = Path.cwd()
+    top = Path(tempfile.mkdtemp(prefix="lithofrac-fuzz-"))
+    try:
+        for name, content in found.files.items():
+            (top / "in" / name).parent.mkdir(parents=True, exist_ok=True)
+            (top / "in" / name).write_bytes(content)
+        os.chdir(top / "in")
+        kind, detail = _tried(found, top)
+    except Failure as failure:
+        kind, detail = failure.args
+    finally:
+        os.chdir(home)
+        shutil.rmtree(top)
+    return {"seed": found.seed, "kind": kind, "target": found.target, "detail": detail}
+
+
+def _tried(found: Mutant, top: Path) -> tuple[str, str]:
+    """Kind of verdict and what was said."""
+    before = _tree(top)
+    if found.words == ("data",):
+        code, said = _call(_read_data)
+        _judge_words(code, said)
+        return ("result" if code == 0 else "refused"), said
+    words = list(found.words)
+    try:
+        if words[0] == "check":
+            code, said = _call(lambda: cli.main(words))
+            if _tree(top) != before:
+                raise Failure("written", "check has changed files")
+            _judge_words(code, said)
+            if code != 0:
+                return ("refused" if code == 2 else "stopped"), said
+            words[0] = "run"
+        code, said = _call(lambda: cli.main([*words, "--out", "results"]))
+    except TooLarge:
+        return "large", ""
+    _judge_words(code, said)
+    _judge_files(code, before, top)
+    return {0: "result", 2: "refused", 3: "stopped"}[code], said
+
+
+def _call(function) -> tuple[int, str]:
+    """Exit code and standard error of a command."""
+    errors = io.StringIO()
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors):
+        try:
+            code = function()
+        except TooLarge:
+            raise
+        except SystemExit as left:
+            code = left.code
+        except Exception:
+            raise Failure("traceback", traceback.format_exc()) from None
+    return code, errors.getvalue()
+
+
+def _read_data() -> int:
+    """What reads data files, as a command would."""
+    try:
+        load_axes(Path("data/klerck2004/figure_axes.csv"))
+        table = measured_strength(Path("data"), "tautona")
+        curves = load_curves(Path("data"), "9")
+    except Exception as error:
+        if cli._exit_code(error) != cli.BAD_INPUT:
+            raise
+        for line in str(error).split("\n"):
+            print(f"lithofrac: {line}", file=sys.stderr)
+        return cli.BAD_INPUT
+    numbers = [table.to_numpy(dtype=float), *(np.concatenate([c.x, c.y]) for c in curves)]
+    if not all(np.isfinite(part).all() for part in numbers):
+        raise Failure("nan", "a number of a data file is not finite")
+    return 0
+
+
+def _judge_words(code: int, said: str) -> None:
+    lines = said.splitlines()
+    if code not in (0, 2, 3):
+        raise Failure("words", f"exit code {code}: {said}")
+    if code and not lines:
+        raise Failure("words", f"exit code {code} without a word")
+    progress = [line for line in lines if not line.startswith("lithofrac: ")]
+    if code == 2 and progress:
+        raise Failure("words", said)
+    if any(len(line) > MOST_LETTERS or not line.isprintable() for line in lines):
+        raise Failure("words", said)
+
+
+def _judge_files(code: int, before: dict, top: Path) -> None:
+    """A refusal leaves nothing; a run leaves whole files in its folder alone, without a NaN."""
+    after = _tree(top)
+    results = {name: after.pop(name) for name in list(after) if name.startswith("in/results")}
+    if after != before:
+        raise Failure("written", f"outside of the results: {sorted(set(after) ^ set(before))}")
+    if code == 2 and results:
+        raise Failure("written", f"refused, and yet {sorted(results)}")
+    half = [name for name in results if Path(name).name.startswith(".")]
+    if half:
+        raise Failure("written", f"half-written {half}")
+    if code == 0:
+        _judge_numbers(top / "in" / "results")
+
+
+def _judge_numbers(results: Path) -> None:
+    summary = json.loads((results / "summary.json").read_text())
+    if summary["status"] != "completed" or summary["energy_residual"] is None:
+        raise Failure("nan", f"summary: {summary}")
+    for path in results.glob("*.parquet"):
+        table = pd.read_parquet(path).select_dtypes("number")
+        bad = ~np.isfinite(table.to_numpy(dtype=float)).all(axis=0)
+        if bad.any():
+            raise Failure("nan", f"{path.name}: {', '.join(table.columns[bad])}")
+    for path in results.glob("fields/*.vtu"):
+        with contextlib.redirect_stdout(io.StringIO()):
+            frame = meshio.read(path)
+        fields = frame.point_data | {name: parts[0] for name, parts in frame.cell_data.items()}
+        bad = [name for name, values in fields.items() if not np.isfinite(values).all()]
+        if bad:
+            raise Failure("nan", f"{path.name}: {', '.join(bad)}")
+
+
+def _tree(top: Path) -> dict[str, bytes | None]:
+    """Path below `top` -> content, None of a folder."""
+    return {
+        path.relative_to(top).as_posix(): path.read_bytes() if path.is_file() else None
+        for path in top.rglob("*")
+    }
+
+
+def main(meshes: Path) -> None:
+    if os.environ.get("LITHOFRAC_BUILD") != "sanitize":  # its shadow memory counts as well
+        resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
+    answers = os.fdopen(os.dup(1), "w", buffering=1)
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what compiled parts print is no answer
+    limit_runs()
+    right = {path.stem: path.read_bytes() for path in sorted(meshes.glob("*.npz"))}
+    for line in sys.stdin:
+        print(json.dumps(verdict(mutant(int(line), right))), file=answers)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
