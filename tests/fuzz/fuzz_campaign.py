@@ -21,6 +21,7 @@ from pathlib import Path
 from fuzz_mutants import mutant
 
 HERE = Path(__file__).parent
+WORKER = HERE / "fuzz_worker.py"
 GOOD = ("result", "large", "refused", "stopped")
 EACH = 400  # mutants of one process
 TIME_LIMIT = 120.0  # seconds for one mutant; the machine may be busy
@@ -69,7 +70,7 @@ def _worker(meshes: str):
     """A process and the way to ask it; it and what it has started end with the block."""
     errors = tempfile.TemporaryFile("w+")
     process = subprocess.Popen(
-        [sys.executable, HERE / "fuzz_worker.py", meshes], env=_environment(), text=True,
+        [sys.executable, WORKER, meshes], env=_environment(), text=True,
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors,
         start_new_session=True,
     )  # fmt: skip

@@ -32,6 +32,56 @@ FACTORS = (
     0.01, 0.1, 0.5, 0.9, 0.99, 1.01, 1.1, 2.0, 3.0, 10.0, 100.0, 1e-3, 1e3, 1e-6, 1e6, 1e9, -1.0,
     0.0,
 )  # fmt: skip
+ENDS = (
+    1e-9,
+    1e-6,
+    1e-3,
+    0.5,
+    0.4999999,
+    0.999999,
+    1.0,
+    89.999999,
+    1e3,
+    1e4,
+    1e5,
+    1e6,
+    1e7,
+    1e9,
+    1e12,
+    1e18,
+)  # of the ranges of keys
+WORDS_OF_KEYS = {
+    "mode": ("off", "inter_element", "intra_element"), "weights": ("volume", "failure_factor"),
+    "reset": ("normal", "paper"), "relative_to": ("affine", "ground"),
+    "sense": ("shorten", "stretch"), "hardening": ("compressive", "total"),
+    "coupling": ("implicit", "explicit"), "band_width": ("sqrt_2A", "sqrt_A"),
+}  # fmt: skip
+# Keys that bases leave out -> section (of a case; "" is the top) and values.
+MORE_KEYS = {
+    "release_steps": ("fracture", (0, 1, 50, 1_000_000)),
+    "interval_steps": ("fracture", (1, 5, 1_000_000)),
+    "reset": ("fracture", ("paper",)),
+    "weights": ("fracture", ("failure_factor",)),
+    "alpha_1_s": ("damping", (0.0, 1.0, 1e6, 1e12)),
+    "tolerance": ("contact", (1e-6, 1e-3, 1e3)),
+    "default_friction": ("contact", (0.0, 10.0, 1e3)),
+    "seed": ("mesh", (2, 7, 2**31 - 1)),
+    "structured": ("scene", (True, False)),
+    "whole_height": ("scene", (True,)),
+    "laterally_fixed": ("scene", (True,)),
+    "lateral_platens": ("scene", (True, False)),
+    "rigid": ("platens", (True,)),
+    "sense": ("loading", ("stretch", "shorten")),
+    "confinement_MPa": ("loading", (0.0, 1.0, 1e3, 1e6)),
+    "lateral_stiffness_over_young": ("loading", (0.0, 0.1, 10.0, 1e3)),
+    "budget_element_steps": ("", (1.0, 1e3, 1e18)),
+    "fracture": ("", ("off", {"mode": "inter_element"}, {"mode": "intra_element"})),
+    "contact": ("", ({}, {"default_friction": 0.5})),
+    "material": ("", ("./rock.yaml", "./regular.yaml", "./steel.yaml", "sandstone", "quartzite")),
+    "elastic": ("material", (True,)),
+    "compression": ("material", (False,)),
+    "reference_size_mm": ("material", (0.1, 2.0, 100.0)),
+}
 KINDS = (*CASES, "velocity", "traction", "boundaries")
 
 
@@ -185,9 +235,23 @@ def _change(values: dict, choose: random.Random) -> None:
     if not places:
         return
     numbers = [(holder, key) for holder, key in places if _is_number(holder[key])]
-    if numbers and choose.random() < 0.6:
+    words = [(holder, key) for holder, key in places if key in WORDS_OF_KEYS]
+    kind = choose.random()
+    if kind < 0.4 and numbers:
         holder, key = choose.choice(numbers)
         holder[key] = _scaled(holder[key], choose)
+        return
+    if kind < 0.5 and numbers:
+        holder, key = choose.choice(numbers)
+        end = choose.choice(ENDS)
+        holder[key] = round(end) if isinstance(holder[key], int) and end >= 1 else end
+        return
+    if kind < 0.55 and words:
+        holder, key = choose.choice(words)
+        holder[key] = choose.choice(WORDS_OF_KEYS[key])
+        return
+    if kind < 0.7:
+        _add_key(values, choose)
         return
     holder, key = choose.choice(places)
     value, change = holder[key], choose.randrange(12)
@@ -206,6 +270,16 @@ def _change(values: dict, choose: random.Random) -> None:
         holder[key] = not value
     else:
         holder[key] = choose.choice(VALUES)
+
+
+def _add_key(values: dict, choose: random.Random) -> None:
+    """A key that may be there, mostly where it belongs; a material has its keys at the top."""
+    key = choose.choice(list(MORE_KEYS))
+    section, choices = MORE_KEYS[key]
+    holder = values.get(section, values) if section else values
+    if not isinstance(holder, dict):
+        holder = values[section] = {"extends": holder} if section == "material" else {}
+    holder[key] = choose.choice(choices)
 
 
 def _is_number(value) -> bool:
