@@ -323,6 +323,8 @@ def reproduce(extra):
             "--keep-going",
             "--rerun-incomplete",
             "--show-failed-logs",
+            "--scheduler",
+            "greedy",  # the default one solves a linear programme for each job: minutes of a core
             *extra,
         )
     if {"-n", "--dry-run", "--dryrun"} & set(extra):
