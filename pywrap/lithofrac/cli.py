@@ -6,6 +6,7 @@ modules are imported by the command that needs them.
 
 from __future__ import annotations
 
+import shutil
 import signal
 import subprocess
 import sys
@@ -36,6 +37,8 @@ OWN_FILES = (
     "fields/failed.vtu",
     "mesh.npz",
     "case.yaml",
+    "geometry.geo",
+    "geometry.msh",
 )  # what a run writes and the next one may delete
 
 
@@ -96,11 +99,10 @@ def mesh(options: Namespace) -> int:
     """Mesh a case and save it."""
     from lithofrac.config import ConfigError
     from lithofrac.results.files import write_whole
-    from lithofrac.scenes import make_mesh
 
     if options.out.exists() and not options.out.is_file():
         raise ConfigError(f"--out {options.out}: is no regular file, expected a file to write")
-    made = make_mesh(_case(options.case, options), options.seed)
+    made = _made(options.case, _case(options.case, options), options.seed)
     options.out.parent.mkdir(parents=True, exist_ok=True)
     write_whole(options.out, lambda part: _save(made, part))
     print(f"{options.out}: {len(made.triangles)} elements, {len(made.nodes)} nodes")
@@ -301,14 +303,24 @@ def _mesh_of(case: Case, options: Namespace) -> Mesh:
     """Mesh of the folder that is resumed, of the file that is named, or a new one."""
     from lithofrac.config import ConfigError
     from lithofrac.problem import Mesh
-    from lithofrac.scenes import make_mesh
 
     path = options.out / "mesh.npz" if options.resume else options.mesh
     if path is None:
-        return make_mesh(case)
+        return _made(options.case, case)
     if options.resume and not path.exists():
         raise ConfigError(f"{path}: no such file, there is no run to resume in {options.out}")
     return Mesh.load(path)
+
+
+def _made(name: str, case: Case, seed: int | None = None) -> Mesh:
+    """A new mesh of a case."""
+    from lithofrac.config import ConfigError
+    from lithofrac.scenes import make_mesh
+
+    try:
+        return make_mesh(case, seed)
+    except ConfigError as error:
+        raise ConfigError(f"{name}: {error}") from None
 
 
 def _accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
@@ -322,9 +334,10 @@ def _accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
         problem = make_problem(case, mesh)
         expected = plan(problem)
     except (ConfigError, CoreError) as error:
-        raise ConfigError(f"{name}: {error}") from None
+        lines = str(error).splitlines()
+        raise ConfigError("\n".join(f"{name}: {line}" for line in lines)) from None
     if expected["steps"] > MOST_STEPS:
-        key = "hold_transits" if case.loading.kind == "traction" else "speed_m_s"
+        key = "hold_transits" if getattr(case.loading, "speed_m_s", None) is None else "speed_m_s"
         raise ConfigError(
             f"{name}: loading.{key} = {getattr(case.loading, key):g}: the run takes "
             f"{expected['steps']:.3g} steps, expected at most {MOST_STEPS}"
@@ -352,38 +365,45 @@ def _find_checkpoint(out: Path, problem: Problem) -> None:
 def _prepare(options: Namespace, case: Case, mesh: Mesh) -> None:
     """Make the results folder; what an earlier run left there goes, unless it is resumed."""
     from lithofrac.config import ConfigError
-    from lithofrac.config.setting import text_of
+    from lithofrac.config.setting import kept, text_of
     from lithofrac.results.files import write_whole
 
     out, named = options.out, Path(options.case)
-    copy = out / "case.yaml"
+    copy, (case, beside) = out / "case.yaml", kept(case)
     try:
         out.mkdir(parents=True, exist_ok=True)
         if options.resume:
             return
         if copy.exists() and named.exists() and copy.samefile(named):
             raise ConfigError(f"--out {out}: the run would replace its case file {named}")
+        for geometry, source in beside.items():
+            if (out / geometry).exists() and source.samefile(out / geometry):
+                raise ConfigError(f"--out {out}: the run would replace its geometry {source}")
         for pattern in OWN_FILES:
             for path in out.glob(pattern):
                 path.unlink()
         write_whole(out / "mesh.npz", mesh.save)
         write_whole(copy, lambda part: part.write_text(text_of(case)))
+        for geometry, source in beside.items():
+            write_whole(out / geometry, lambda part, source=source: shutil.copyfile(source, part))
     except OSError as error:
         raise ConfigError(f"--out {out}: cannot be written ({error.strerror})") from None
 
 
 def _print_plan(name: str, case: Case) -> None:
-    from lithofrac.scenes import make_mesh
+    import numpy as np
 
-    made = make_mesh(case)
+    made = _made(name, case)
     problem, expected = _accepted(name, case, made)
-    rock = made.body == 0  # platens come after it
+    of_case = [i for i, material in enumerate(problem.materials) if material == case.material]
+    rock = np.isin(made.body, of_case)
     width = float(case.material.band_width_of(made.areas()[rock].max()))
+    extent = " x ".join(f"{1e3 * length:.6g}" for length in np.ptp(made.nodes, axis=0))
     used = [feature for feature, uses in expected["uses"].items() if uses]
     unused = [feature for feature, uses in expected["uses"].items() if not uses]
     rows = [
         ("case", f"{name}: {case.title}"),
-        ("scene", f"{case.scene.kind}, mesh {case.mesh.seed}"),
+        ("scene", f"{case.scene.kind}, {extent} mm, mesh {case.mesh.seed}"),
         ("material", case.material.title or "without a title"),
         ("elements", f"{expected['elements']} on {expected['nodes']} nodes"),
         ("crack band", f"{1e3 * width:.3g} mm, {_limit(case)}"),

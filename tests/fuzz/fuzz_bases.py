@@ -196,3 +196,23 @@ def own_msh(columns: int = 3, rows: int = 4) -> str:
         ],
     }
     return "".join(f"${name}\n{chr(10).join(rows)}\n$End{name}\n" for name, rows in parts.items())
+
+
+# Meshed by gmsh in other formats than the one above.
+OWN_GEO = """\
+SetFactory("OpenCASCADE");
+Rectangle(1) = {0, 0, 0, 3, 3};
+Rectangle(2) = {0, 3, 0, 3, 1};
+Coherence;
+Mesh.MeshSizeMax = 1.5;
+Physical Surface("rock") = {1};
+Physical Surface("cap") = {2};
+Physical Curve("bottom") = {1};
+Physical Curve("right") = {2};
+Physical Curve("top") = {7};
+"""
+OTHER_MSH = {
+    "own_41.msh": ("-format", "msh41"),
+    "own_22_binary.msh": ("-format", "msh22", "-bin"),
+    "own_41_binary.msh": ("-format", "msh41", "-bin"),
+}

@@ -111,9 +111,11 @@ def _environment() -> dict:
 
 def _keep(seed: int) -> None:
     """Write the files of a mutant, to look at."""
+    from fuzz_worker import read_meshes
+
     with tempfile.TemporaryDirectory() as meshes:
         subprocess.run([sys.executable, "-c", MAKE_MESHES, meshes], env=_environment(), check=True)
-        found = mutant(seed, {path.stem: path.read_bytes() for path in Path(meshes).glob("*.npz")})
+        found = mutant(seed, read_meshes(Path(meshes)))
     for name, content in found.files.items():
         path = Path(f"fuzz-{seed}") / name
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import yaml
-from fuzz_bases import CASES, DATA, MATERIALS, MESHED, SUITE
+from fuzz_bases import CASES, DATA, MATERIALS, MESHED, OTHER_MSH, OWN, SUITE
 
 WORDS = (
     b"nan", b".nan", b".inf", b"-.inf", b"1e400", b"-1e400", b"1e-400", b"9" * 400, b"-0", b"0x10",
@@ -82,6 +82,9 @@ MORE_KEYS = {
     "compression": ("material", (False,)),
     "reference_size_mm": ("material", (0.1, 2.0, 100.0)),
 }
+CELLS = (
+    b"", b"-1", b"0", b"1", b"2", b"3", b"7", b"13", b"99", b"0.5", b"1e308", b"abc", b"4294967297",
+)  # fmt: skip
 KINDS = (*CASES, "velocity", "traction", "boundaries")
 
 
@@ -102,8 +105,8 @@ class Mutant:
 def mutant(seed: int, meshes: dict[str, bytes]) -> Mutant:
     """The mutant of a seed; `meshes` holds the right mesh of every case, as an .npz."""
     choose = random.Random(seed)
-    makers = (_case, _material, _suite, _mesh, _data)
-    make = choose.choices(makers, weights=(40, 20, 5, 25, 10))[0]
+    makers = (_case, _material, _suite, _mesh, _own, _data)
+    make = choose.choices(makers, weights=(35, 17, 4, 22, 13, 9))[0]
     return make(seed, choose, meshes)
 
 
@@ -147,6 +150,20 @@ def _mesh(seed: int, choose: random.Random, meshes: dict[str, bytes]) -> Mutant:
     return Mutant(seed, f"mesh of {name}, {how}", files, words)
 
 
+def _own(seed: int, choose: random.Random, meshes: dict[str, bytes]) -> Mutant:
+    """A Gmsh file, or the case that names it."""
+    file = choose.choice(("own_22.msh", "own_22.msh", *OTHER_MSH))
+    case, mesh = OWN.encode(), meshes[file]
+    if choose.random() < 0.25:
+        case, how = _text(case, choose)
+    elif choose.random() < 0.6 and "binary" not in file:
+        mesh, how = _cells(mesh, choose, b" "), "cells"
+    else:
+        mesh, how = _bytes(mesh, choose), "bytes"
+    files = _folder() | {"case.yaml": case, "own.msh": mesh}
+    return Mutant(seed, f"own {file}, {how}", files, ("check", "case.yaml"))
+
+
 def _data(seed: int, choose: random.Random, meshes: dict[str, bytes]) -> Mutant:
     file = choose.choice(list(DATA))
     files = {name: text.encode() for name, text in DATA.items()}
@@ -187,22 +204,22 @@ def _bytes(content: bytes, choose: random.Random) -> bytes:
     return bytes(found)
 
 
-def _cells(content: bytes, choose: random.Random) -> bytes:
-    """Change cells and rows of a table of commas."""
-    rows = [line.split(b",") for line in content.splitlines()]
+def _cells(content: bytes, choose: random.Random, gap: bytes = b",") -> bytes:
+    """Change cells and rows of a table."""
+    rows = [line.split(gap) for line in content.splitlines()]
     for _ in range(choose.choice((1, 1, 2, 4))):
         row = choose.randrange(len(rows))
         cell = choose.randrange(len(rows[row])) if rows[row] else 0
         change = choose.randrange(5)
         if change <= 1 and rows[row]:
-            rows[row][cell] = choose.choice((*WORDS, b"", b"-1", b"0", b"1e308", b"abc"))
+            rows[row][cell] = choose.choice((*WORDS, *CELLS))
         elif change == 2 and rows[row]:
             del rows[row][cell]
         elif change == 3:
             rows[row].insert(cell, choose.choice(WORDS))
         else:
             rows.insert(row, list(rows[choose.randrange(len(rows))]))
-    return b"\n".join(b",".join(row) for row in rows) + b"\n"
+    return b"\n".join(gap.join(row) for row in rows) + b"\n"
 
 
 # ---------------------------------------------------------------- mappings

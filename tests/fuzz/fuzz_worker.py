@@ -12,6 +12,7 @@ import json
 import os
 import resource
 import shutil
+import subprocess
 import sys
 import tempfile
 import traceback
@@ -21,7 +22,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pandas as pd
-from fuzz_bases import CASES, MATERIALS
+from fuzz_bases import CASES, MATERIALS, OTHER_MSH, OWN_GEO, own_msh
 from fuzz_mutants import Mutant, mutant
 
 from lithofrac import cli
@@ -29,7 +30,7 @@ from lithofrac.config import load_case
 from lithofrac.config.element_count import element_count, platen_count
 from lithofrac.data import load_curves, measured_strength
 from lithofrac.data.axes import load_axes
-from lithofrac.scenes import make_mesh
+from lithofrac.scenes import _gmsh, make_mesh
 
 GOOD = ("result", "large", "refused", "stopped")
 MOST_ELEMENTS, MOST_STEPS = 20_000, 100
@@ -52,6 +53,8 @@ def limit_runs() -> None:
 
     def small_case(*arguments):
         case = case_of(*arguments)
+        if case.scene.kind == "gmsh_file":
+            return case
         count = element_count(case.scene)
         if case.platens is not None and case.scene.kind in WITH_PLATENS:
             count += platen_count(case.scene, case.platens)
@@ -71,13 +74,24 @@ def limit_runs() -> None:
 
 
 def write_meshes(folder: str) -> None:
-    """The right mesh of every case of `fuzz_bases`, as NAME.npz."""
+    """The right mesh of every case of `fuzz_bases`, as NAME.npz, and .msh files."""
+    Path(folder, "own_22.msh").write_text(own_msh())
+    Path(folder, "own.geo").write_text(OWN_GEO)
+    for file, options in OTHER_MSH.items():
+        words = [*_gmsh._gmsh(), "own.geo", "-2", "-o", file, "-v", "1", *options]
+        subprocess.run(words, cwd=folder, check=True)
     with tempfile.TemporaryDirectory() as name:
         for file, text in MATERIALS.items():
             (Path(name) / file).write_text(text)
         for case, text in CASES.items():
             (Path(name) / "case.yaml").write_text(text)
             make_mesh(load_case(Path(name) / "case.yaml")).save(Path(folder, f"{case}.npz"))
+
+
+def read_meshes(folder: Path) -> dict[str, bytes]:
+    """What `write_meshes` wrote: name of a case, or of a .msh -> content."""
+    cases = {path.stem: path.read_bytes() for path in folder.glob("*.npz")}
+    return cases | {path.name: path.read_bytes() for path in folder.glob("*.msh")}
 
 
 def verdict(found: Mutant) -> dict:
@@ -216,7 +230,7 @@ def main(meshes: Path) -> None:
     answers = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what compiled parts print is no answer
     limit_runs()
-    right = {path.stem: path.read_bytes() for path in sorted(meshes.glob("*.npz"))}
+    right = read_meshes(meshes)
     for line in sys.stdin:
         print(json.dumps(verdict(mutant(int(line), right))), file=answers)
 

@@ -83,8 +83,14 @@ class Run:
         return last_frame(self.folder)
 
     def is_rock(self, frame: Frame) -> np.ndarray:
-        """Which elements of a frame of this run are of the specimen, (m,) bool."""
+        """Which elements of a frame of this run are of the specimen, (m,) bool.
+
+        In a geometry of one's own: those of the material of the case.
+        """
         names = Mesh.load(self.folder / "mesh.npz").body_names
+        if self.test == "gmsh_file":
+            others = self.case["scene"].get("materials", {})
+            return np.isin(frame.body, [i for i, name in enumerate(names) if name not in others])
         return frame.body == names.index(ROCK)
 
     @cached_property

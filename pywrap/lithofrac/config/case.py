@@ -9,7 +9,7 @@ from pydantic import Field, ValidationError, model_validator
 from lithofrac.config.base import MM, Coordinate, Section
 from lithofrac.config.contact import ContactSection
 from lithofrac.config.errors import ConfigError, sentences
-from lithofrac.config.extend import MATERIALS, Draft, nested, read_draft
+from lithofrac.config.extend import GEOMETRY, Draft, nested, read_draft
 from lithofrac.config.fit import misfits
 from lithofrac.config.fracture import FractureSection
 from lithofrac.config.loading import Loading
@@ -114,7 +114,7 @@ def load_case(path: Path | str, overrides: Mapping | None = None) -> Case:
 def check_case(draft: Draft) -> Case:
     """Turn merged keys into a case; see `load_case`."""
     problems = []
-    for at in MATERIALS:
+    for at in draft.materials:
         holder = draft.holder(at)
         own = holder.get(at[-1])
         if isinstance(own, str) or (isinstance(own, Mapping) and "extends" in own):
@@ -123,6 +123,9 @@ def check_case(draft: Draft) -> Case:
             except ConfigError as error:
                 problems.append(str(error))
                 holder[at[-1]] = _ANY
+    file = draft.holder(GEOMETRY).get(GEOMETRY[-1])
+    if isinstance(file, str):
+        draft.holder(GEOMETRY)[GEOMETRY[-1]] = str(draft.folder_of(GEOMETRY) / file)
     try:
         case = Case.model_validate(draft.values)
     except ValidationError as error:
@@ -145,7 +148,7 @@ def _fill_in_material(draft: Draft, at: tuple) -> None:
         key = ".".join((*at, "extends"))
         raise ConfigError(f"{where}: {key}: expected a text, the name of a material")
     try:
-        path = find_material(name, draft.beside[at])
+        path = find_material(name, draft.folder_of(at))
     except ConfigError as error:
         raise ConfigError(f"{where}: {error}") from None
     files = {key: draft.file_of((*at, key)) for key in own}

@@ -12,7 +12,10 @@ from pathlib import Path
 from lithofrac.config.errors import ConfigError, one_line
 from lithofrac.config.yaml_file import read_yaml
 
-MATERIALS = (("material",), ("platens", "material"))  # keys that may hold the name of a material
+ANY = "*"  # stands for every key of a mapping
+# Keys that may hold the name of a material, and the one that holds a file.
+MATERIALS = (("material",), ("platens", "material"), ("scene", "materials", ANY))
+GEOMETRY = ("scene", "file")
 
 
 @dataclass
@@ -24,8 +27,8 @@ class Draft:
     values : the merged keys, without `extends`
     file : the file that was asked for, named where no better one is known
     origin : path of a key -> file it was read from
-    beside : key of `MATERIALS` -> folder of the file that names the material; relative paths
-        start there
+    beside : key of a material or file -> folder of the file that names it; relative paths start
+        there
     """
 
     values: dict
@@ -33,9 +36,14 @@ class Draft:
     origin: dict[tuple, str] = field(default_factory=dict)
     beside: dict[tuple, Path] = field(default_factory=dict)
 
-    def __post_init__(self) -> None:
-        for at in MATERIALS:
-            self.beside.setdefault(at, Path())
+    @property
+    def materials(self) -> list[tuple]:
+        """Keys that are there and hold a material, or the name of one."""
+        return [at for pattern in MATERIALS for at in _matching(pattern, self.values)]
+
+    def folder_of(self, at: tuple) -> Path:
+        """Folder where relative paths of this key start."""
+        return self.beside.get(at, Path())
 
     def holder(self, at: tuple) -> dict:
         """Mapping that holds, or would hold, the key of this path; empty where there is none."""
@@ -59,14 +67,17 @@ class Draft:
         for key, value in values.items():
             path = (*at, key)
             old = here.get(key)
-            if path in MATERIALS and isinstance(value, Mapping) and isinstance(old, str):
+            named = isinstance(old, str) and any(_matches(path, way) for way in MATERIALS)
+            if named and isinstance(value, Mapping):
                 old = here[key] = {"extends": old}
                 self.origin[(*path, "extends")] = self.file_of(path)
             if isinstance(value, Mapping) and isinstance(old, Mapping) and _same_kind(old, value):
                 self.put(value, file, beside, path)
                 continue
             if beside is not None:
-                self.beside |= {at: beside for at in MATERIALS if at[: len(path)] == path}
+                ways = [way for way in (*MATERIALS, GEOMETRY) if _matches(path, way[: len(path)])]
+                inside = (at for way in ways for at in _matching(way[len(path) :], value))
+                self.beside |= {(*path, *at): beside for at in inside}
             self._forget(path)
             here[key] = _copied(value)
             self.origin[path] = file
@@ -88,7 +99,7 @@ def read_draft(path: Path, chain: tuple[Path, ...] = ()) -> Draft:
     """
     values = read_yaml(path)
     parent = values.pop("extends", None)
-    draft = Draft({}, str(path), beside={at: path.parent for at in MATERIALS})
+    draft = Draft({}, str(path))
     if parent is not None:
         if not isinstance(parent, str) or not parent:
             raise ConfigError(f"{path}: extends: expected a text, the file that is extended")
@@ -121,6 +132,23 @@ def nested(values: Mapping) -> dict:
             inner = {name: inner}
         draft.put(inner, "")
     return draft.values
+
+
+def _matches(path: tuple, pattern: tuple) -> bool:
+    return len(path) == len(pattern) and all(
+        way in (ANY, key) for key, way in zip(path, pattern, strict=True)
+    )
+
+
+def _matching(pattern: tuple, value) -> list[tuple]:
+    """Keys within a value that a pattern names and that are there; `()` is the value itself."""
+    if not pattern:
+        return [()]
+    if not isinstance(value, Mapping):
+        return []
+    first, rest = pattern[0], pattern[1:]
+    keys = list(value) if first == ANY else [key for key in (first,) if key in value]
+    return [(key, *more) for key in keys for more in _matching(rest, value[key])]
 
 
 def _same_kind(old: Mapping, new: Mapping) -> bool:

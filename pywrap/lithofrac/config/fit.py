@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from lithofrac.config.base import MM
 from lithofrac.config.contact import PLATEN, ROCK
 from lithofrac.config.element_count import MOST_ELEMENTS, element_count, platen_count
+from lithofrac.config.gmsh_file import BoundaryLoading, GmshFile
 from lithofrac.config.loading import TractionLoading
 from lithofrac.config.material import Material
 from lithofrac.config.scene import SIZE_KEYS, Brazilian, Hole, PlaneStrain, Punch
@@ -20,6 +21,8 @@ UNCONFINED = ("hole_quarter", "hole", "bar", "brazilian")
 
 def misfits(case: Case) -> list[str]:
     """Sentences, each beginning with the key that is wrong."""
+    if isinstance(case.scene, GmshFile) or isinstance(case.loading, BoundaryLoading):
+        return _own_geometry_problems(case)
     return [
         *_loading_problems(case),
         *_platen_problems(case),
@@ -28,6 +31,19 @@ def misfits(case: Case) -> list[str]:
         *_size_problems(case),
         *_count_problems(case),
     ]
+
+
+def _own_geometry_problems(case: Case) -> list[str]:
+    """What can be said of a geometry of one's own before its file is read."""
+    scene, loading = case.scene, case.loading
+    if not isinstance(scene, GmshFile):
+        return [f"loading.kind = boundaries: the scene {scene.kind} has none, expected gmsh_file"]
+    if not isinstance(loading, BoundaryLoading):
+        return [f"loading.kind = {loading.kind}: the scene gmsh_file expects boundaries"]
+    problems = _fracture_problems(case)
+    if case.platens is not None:
+        problems.append("platens: the scene gmsh_file has none but its own bodies, leave it out")
+    return [*problems, *scene.seed_problems(case.mesh.seed)]
 
 
 def too_large(material: Material, width: float) -> str:
@@ -133,7 +149,8 @@ def _fracture_problems(case: Case) -> list[str]:
         )
     if case.contact is None:
         problems.append(f"{key}: faces of cracks need a section contact:, expected it or off")
-    if case.material.elastic:
+    materials = [case.material, *getattr(scene, "materials", {}).values()]
+    if all(material.elastic for material in materials):
         problems.append(f"{key}: the material is elastic, nothing in it can fail, expected off")
     return problems
 

@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lithofrac.config.base import MPA, EndStrain, Pressure, Section, Speed, Traction
+from lithofrac.config.gmsh_file import BoundaryLoading
 
 Transits = Annotated[float, Field(ge=0.0, le=1e6)]
 
@@ -62,4 +63,6 @@ class TractionLoading(Section):
         return self.stress_MPa * MPA
 
 
-Loading = Annotated[VelocityLoading | TractionLoading, Field(discriminator="kind")]
+Loading = Annotated[
+    VelocityLoading | TractionLoading | BoundaryLoading, Field(discriminator="kind")
+]

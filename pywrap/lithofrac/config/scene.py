@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from lithofrac.config.base import MM, Length, Section
+from lithofrac.config.gmsh_file import GmshFile
 
 
 class SingleElement(Section):
@@ -261,7 +262,15 @@ class Brazilian(Section):
 
 
 Scene = Annotated[
-    SingleElement | Triaxial | PlaneStrain | HoleQuarter | Hole | Bar | Punch | Brazilian,
+    SingleElement
+    | Triaxial
+    | PlaneStrain
+    | HoleQuarter
+    | Hole
+    | Bar
+    | Punch
+    | Brazilian
+    | GmshFile,
     Field(discriminator="kind"),
 ]
 

@@ -23,6 +23,10 @@ def schemas() -> dict[str, dict]:
     changed = {"type": "object", "required": ["extends"], "properties": {"extends": named}}
     for holder in (properties, case["$defs"]["PlatensSection"]["properties"]):
         holder["material"] = {"anyOf": [named, changed, holder["material"]]}
+    materials = case["$defs"]["GmshFile"]["properties"]["materials"]
+    materials["additionalProperties"] = {
+        "anyOf": [named, changed, materials["additionalProperties"]]
+    }
     off = {"enum": ["off", False]}  # the word, as YAML 1.2 and 1.1 read it
     properties["fracture"] = {"anyOf": [off, properties["fracture"]]}
     mode = case["$defs"]["FractureSection"]["properties"]["mode"]

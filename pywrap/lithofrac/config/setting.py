@@ -1,8 +1,11 @@
 """Keys from the command line, and a case written back as YAML."""
 
+from pathlib import Path
+
 from lithofrac.config import yaml_file
 from lithofrac.config.case import Case
 from lithofrac.config.errors import ConfigError, one_line
+from lithofrac.config.gmsh_file import GmshFile
 
 
 def settings(words: list[str]) -> dict:
@@ -20,6 +23,23 @@ def settings(words: list[str]) -> dict:
             raise ConfigError(f"--set {one_line(word)}: expected KEY=VALUE")
         found[key.strip()] = yaml_file.parsed(text, f"--set {one_line(key)}")
     return found
+
+
+def kept(case: Case) -> tuple[Case, dict[str, Path]]:
+    """A case that stands in a folder of its own, and the files that it then needs beside it.
+
+    Returns
+    -------
+    tuple
+        The case, which names its geometry beside itself, and name there -> file to copy.
+    """
+    scene = case.scene
+    if not isinstance(scene, GmshFile):
+        return case, {}
+    name = f"geometry{scene.path.suffix}"
+    return case.model_copy(update={"scene": scene.model_copy(update={"file": name})}), {
+        name: scene.path
+    }
 
 
 def text_of(case: Case) -> str:

@@ -22,6 +22,8 @@ ROUND = np.array([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000])
 BESIDE, ABOVE = 1.2, 1.7  # inches for labels and the bar, for labels and the legend
 TWO_LINES = 0.3  # inches for titles of two lines
 TALLEST, NARROWEST = 5.0, 5.2  # inches, of a panel and of the figure
+CLOSER = 0.4  # extent of the cracks over that of the bodies, below which they are shown alone
+METRES = 1e4  # mm: bodies of a larger extent are drawn in metres
 AROUND = 0.06  # of the extent, shown beside the bodies; what flies further is cut off
 
 
@@ -38,10 +40,12 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     draw_modes(by_mode, run, frame, faces, factor)
     draw_bodies(by_time, run, frame, faces, factor)
     lines = draw_times(by_time, frame, faces, times, factor)
-    by_mode.set(title="by mode", ylabel="y [mm]")
+    by_mode.set_title("by mode")
     by_time.set_title("by time of insertion")
     for panel in axes[0]:
-        panel.set_xlabel("x [mm]")
+        _look_closer(panel, frame, faces)
+        _name_axes(panel, frame)
+    by_time.set_ylabel("")
     if len(times):
         bar = drawn.colorbar(lines, ax=list(axes[0]), shrink=0.8, aspect=30)
         bar.set_label("time of insertion [ms]")
@@ -49,7 +53,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
         *by_mode.get_legend_handles_labels(),
         loc="outside upper center",
         ncols=2,
-        title=f"{run.name} at {1e3 * frame.time_s:.3g} ms, displacements {scale(factor)}",
+        title=f"{run.name} at {_shown(1e3 * frame.time_s)} ms, displacements {scale(factor)}",
     )
     return drawn
 
@@ -159,6 +163,32 @@ def _set_window(axes: Axes, frame: Frame) -> None:
     axes.set_xlim(low[0] - around, high[0] + around)
     axes.set_ylim(low[1] - around, high[1] + around)
     axes.grid(visible=False)
+
+
+def _look_closer(axes: Axes, frame: Frame, faces: Faces) -> None:
+    """Show the cracks alone where they are far smaller than the bodies, as about a stope."""
+    if len(faces.edges) == 0:
+        return
+    places = frame.nodes[faces.edges].reshape(-1, 2)
+    low, high = places.min(axis=0), places.max(axis=0)
+    if (high - low).max() > CLOSER * np.ptp(frame.nodes, axis=0).max():
+        return
+    middle, reach = (low + high) / 2, 0.8 * (high - low).max()
+    axes.set_xlim(middle[0] - reach, middle[0] + reach)
+    axes.set_ylim(middle[1] - reach, middle[1] + reach)
+
+
+def _name_axes(axes: Axes, frame: Frame) -> None:
+    """Millimetres, or metres where there are many of them."""
+    large = np.ptp(frame.nodes, axis=0).max() > METRES
+    axes.set(xlabel="x [m]" if large else "x [mm]", ylabel="y [m]" if large else "y [mm]")
+    if large:
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_formatter(lambda value, _: f"{value / 1e3:g}".replace("-", "\u2212"))
+
+
+def _shown(number: float) -> str:
+    return f"{number:.3g}" if number < 1e3 else f"{number:.0f}"
 
 
 def _size(frame: Frame, columns: int) -> dict[str, float]:

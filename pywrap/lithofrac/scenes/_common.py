@@ -2,7 +2,9 @@
 
 from lithofrac.config.case import Case
 from lithofrac.config.contact import ROCK
+from lithofrac.config.gmsh_file import GmshFile
 from lithofrac.config.loading import TractionLoading
+from lithofrac.config.material import Material
 from lithofrac.problem import (
     Contact,
     Damping,
@@ -22,9 +24,7 @@ def settings(case: Case, mesh: Mesh, points: dict[str, tuple[float, float]]) -> 
     """Keyword arguments of `Problem` that do not depend on the scene."""
     return {
         "mesh": mesh,
-        "materials": tuple(
-            case.material if name == ROCK else case.platens.material for name in mesh.body_names
-        ),
+        "materials": tuple(_material(case, name) for name in mesh.body_names),
         "damping": Damping(case.damping.fraction, case.damping.alpha_1_s, case.damping.relative_to),
         "contact": _contact(case, mesh),
         "fracture": _fracture(case),
@@ -35,10 +35,18 @@ def settings(case: Case, mesh: Mesh, points: dict[str, tuple[float, float]]) -> 
     }
 
 
+def _material(case: Case, body: str) -> Material:
+    if isinstance(case.scene, GmshFile):
+        return case.scene.materials.get(body, case.material)
+    return case.material if body == ROCK else case.platens.material
+
+
 def _contact(case: Case, mesh: Mesh) -> Contact | None:
     """Friction by bodies: `platen` stands for all of them but the rock."""
     if case.contact is None:
         return None
+    if isinstance(case.scene, GmshFile):
+        return Contact(case.contact.pairs, case.contact.default_friction, case.contact.tolerance)
     table = {
         (a, b): friction
         for (first, second), friction in case.contact.pairs.items()

@@ -2,6 +2,7 @@
 
 from lithofrac.config.case import Case
 from lithofrac.config.contact import ROCK
+from lithofrac.config.gmsh_file import GmshFile
 from lithofrac.mesh_flaws import coincident
 from lithofrac.problem import Mesh
 from lithofrac.scenes._platens import name_of
@@ -23,7 +24,9 @@ AT_ONE_PLACE = 1e-6  # of the shortest edge
 
 
 def misfit(case: Case, mesh: Mesh) -> str:
-    """Why the case cannot run on the mesh, or nothing."""
+    """Why the mesh is not one of the case, or nothing; a mesh of a Gmsh file says so itself."""
+    if isinstance(case.scene, GmshFile):
+        return ""
     sides = _platens(case)
     bodies = (ROCK, *map(name_of, sides))
     if mesh.body_names != bodies:
@@ -32,7 +35,7 @@ def misfit(case: Case, mesh: Mesh) -> str:
     for name in wanted:
         if not len(mesh.edge_sets.get(name, ())):
             return f"the mesh has no edge set {name!r}, expected a mesh of this case"
-    return "" if case.contact is not None else unmerged(mesh)
+    return ""
 
 
 def unmerged(mesh: Mesh) -> str:

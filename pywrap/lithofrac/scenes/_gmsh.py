@@ -16,6 +16,16 @@ from pathlib import Path
 import meshio
 import numpy as np
 
+from lithofrac.config.errors import one_line
+
+# What meshio raises: at files without elements, cut off, or of anything else.
+MISREAD = (
+    meshio.ReadError, ArithmeticError, AssertionError, LookupError, MemoryError, TypeError,
+    ValueError,
+)  # fmt: skip
+NOT_CLOSED = "not closed by"  # words of meshio on a section without an end
+FORMATS = "Gmsh's format 2.2 or 4.1"
+NAMED = "'scene.geo', "  # gmsh names its own copy of the text
 TIME_LIMIT = 600.0  # seconds; meshes of the suite take less than one
 
 HEAD = """\
@@ -31,6 +41,10 @@ Mesh.Binary = 0;
 
 class MeshError(RuntimeError):
     """gmsh is missing or gave no mesh; the message holds its last words."""
+
+
+class GeoError(MeshError):
+    """A text that gmsh does not accept, or a mesh that cannot be read."""
 
 
 @dataclass(frozen=True)
@@ -52,9 +66,22 @@ def mesh_from(geo: str) -> RawMesh:
     MeshError
         When gmsh cannot be started, fails, or leaves no triangles.
     """
+    return _raw(meshed(HEAD + geo))
+
+
+def meshed(geo: str) -> meshio.Mesh:
+    """What gmsh makes of a text, which may be anybody's: see `_script` for what is refused first.
+
+    Raises
+    ------
+    GeoError
+        When gmsh finds a mistake in it, or leaves no elements.
+    MeshError
+        When gmsh cannot be run.
+    """
     with tempfile.TemporaryDirectory(prefix="lithofrac-") as name:
         folder = Path(name)
-        (folder / "scene.geo").write_text(HEAD + geo)
+        (folder / "scene.geo").write_text(geo)
         command = [*_gmsh(), "scene.geo", "-2", "-o", "scene.msh", "-noenv", "-v", "2"]
         own_home = {**os.environ, "HOME": name, "OMP_NUM_THREADS": "1"}
         try:
@@ -65,17 +92,34 @@ def mesh_from(geo: str) -> RawMesh:
         except (OSError, subprocess.TimeoutExpired) as error:
             raise MeshError(f"gmsh could not be run: {error}") from None
         if done.returncode != 0 or not (folder / "scene.msh").exists():
-            said = (done.stderr.strip() or done.stdout.strip() or "no message").splitlines()
-            raise MeshError(f"gmsh gave no mesh: {said[-1]}")
-        return _raw(_read(folder / "scene.msh"))
+            said = [*done.stdout.splitlines(), *done.stderr.splitlines()]
+            words = [line for line in said if line.strip() and not line.startswith("Warning")]
+            raise GeoError(f"gmsh gave no mesh: {words[-1] if words else 'no message'}")
+        wrong = [line for line in done.stderr.splitlines() if line.startswith("Error")]
+        if wrong:  # it goes on after a mistake, and ends well
+            words = wrong[0].partition(":")[2].strip()
+            raise GeoError(f"gmsh gave no mesh: {words.removeprefix(NAMED)}")
+        return read(folder / "scene.msh")
 
 
-def _read(path: Path) -> meshio.Mesh:
+def read(path: Path) -> meshio.Mesh:
+    """Read a .msh.
+
+    Raises
+    ------
+    GeoError
+        When meshio cannot.
+    """
+    said = io.StringIO()  # meshio prints empty lines, and goes on after a lost end
     try:
-        with contextlib.redirect_stdout(io.StringIO()):  # meshio prints empty lines
-            return meshio.read(path)
-    except (ValueError, meshio.ReadError) as error:  # no elements at all
-        raise MeshError(f"gmsh gave no mesh that can be read: {error}") from None
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            found = meshio.gmsh.read(path)
+        if NOT_CLOSED in said.getvalue():
+            raise meshio.ReadError(said.getvalue().removeprefix("Warning: "))
+    except MISREAD as error:
+        words = one_line(error, 150) or type(error).__name__
+        raise GeoError(f"no mesh that can be read, expected {FORMATS} ({words})") from None
+    return found
 
 
 def _gmsh() -> list[str]:

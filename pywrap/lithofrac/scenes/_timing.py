@@ -42,13 +42,13 @@ def velocity_timing(rate: float, ramp: float, end_strain: float, preload: float 
     end = ramp / 2 + (preload + end_strain) / rate
     if preload == 0.0:
         return Timing(Ramp(0.0, ramp), Ramp(0.0, ramp), 0.0, end)
-    lead = _time_to_go(preload / rate, ramp)
+    lead = time_to_go(preload / rate, ramp)
     full = max(ramp, lead)
     start = full - lead
     return Timing(Ramp(start, ramp), Ramp(0.0, full), full, start + end)
 
 
-def _time_to_go(distance: float, ramp: float) -> float:
+def time_to_go(distance: float, ramp: float) -> float:
     """Time [s] in which a smooth start of duration `ramp` covers `distance` / full speed [s]."""
     if distance >= ramp / 2:
         return distance + ramp / 2

@@ -1,14 +1,15 @@
 """Which module makes which kind of scene."""
 
 from lithofrac.config.case import Case
-from lithofrac.config.contact import ROCK
 from lithofrac.config.errors import ConfigError
 from lithofrac.config.fit import too_large
+from lithofrac.config.gmsh_file import GmshFile
 from lithofrac.config.scene import SIZE_KEYS
 from lithofrac.problem import Mesh, Problem
 from lithofrac.scenes import (
     bar,
     brazilian,
+    gmsh_file,
     hole,
     hole_quarter,
     plane_strain,
@@ -16,7 +17,7 @@ from lithofrac.scenes import (
     single_element,
     triaxial,
 )
-from lithofrac.scenes._fit import misfit
+from lithofrac.scenes._fit import misfit, unmerged
 
 SCENES = {
     "single_element": single_element,
@@ -27,6 +28,7 @@ SCENES = {
     "bar": bar,
     "punch": punch,
     "brazilian": brazilian,
+    "gmsh_file": gmsh_file,
 }
 
 
@@ -57,12 +59,21 @@ def make_problem(case: Case, mesh: Mesh) -> Problem:
     why = misfit(case, mesh)
     if why:
         raise ConfigError(why)
-    material = case.material
-    areas = mesh.areas()[mesh.body == mesh.body_names.index(ROCK)]
-    width = float(material.band_width_of(areas.max()))
-    why = too_large(material, width)
+    problem = SCENES[case.scene.kind].problem(case, mesh)
+    for number, (body, material) in enumerate(zip(mesh.body_names, problem.materials, strict=True)):
+        width = float(material.band_width_of(mesh.areas()[mesh.body == number].max()))
+        why = too_large(material, width)
+        if why:
+            raise ConfigError(f"{_size_key(case, body)}: {why}")
+    why = unmerged(mesh) if case.contact is None else ""
     if why:
-        key = SIZE_KEYS.get(case.scene.kind, "element_size_mm")
-        value = getattr(case.scene, key)
-        raise ConfigError(f"scene.{key} = {value:g}: {why}")
-    return SCENES[case.scene.kind].problem(case, mesh)
+        raise ConfigError(why)
+    return problem
+
+
+def _size_key(case: Case, body: str) -> str:
+    """Key and value that set the size of the largest elements of a body."""
+    if isinstance(case.scene, GmshFile):
+        return f"scene.file = {case.scene.file}: physical surface {body!r}"
+    key = SIZE_KEYS.get(case.scene.kind, "element_size_mm")
+    return f"scene.{key} = {getattr(case.scene, key):g}"

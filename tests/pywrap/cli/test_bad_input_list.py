@@ -153,7 +153,8 @@ def test_a_wrong_material(files, refused, tmp_path, old, new, message):
         ("title: A bar", "title: !!python/name:os.system x", "line 1, column 8: could not "
          "determine a constructor for the tag 'tag:yaml.org,2002:python/name:os.system'"),
         ("kind: bar", "kind: [a]", "scene.kind = ['a']: unknown kind, expected one of: bar, "
-         "brazilian, hole, hole_quarter, plane_strain, punch, single_element, triaxial"),
+         "brazilian, gmsh_file, hole, hole_quarter, plane_strain, punch, single_element, "
+         "triaxial"),
         ("kind: bar", 'kind: "b\\na\\x1br"', "scene.kind = b a\\x1br: unknown kind, did you mean "
          "'bar'?"),
         ("./rock.yaml", '"a\\0/b"', "{folder}/a\\x00/b: no such file"),

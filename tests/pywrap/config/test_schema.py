@@ -13,6 +13,7 @@ pytestmark = pytest.mark.no_core
 CONFIGS = Path("configs")
 FILES = [
     *((path, "case") for path in sorted((CONFIGS / "cases").glob("*.yaml"))),
+    *((path, "case") for path in sorted((CONFIGS / "examples").glob("*.yaml"))),
     *((path, "material") for path in sorted((CONFIGS / "materials").glob("*.yaml"))),
     *((path, "suite") for path in sorted(CONFIGS.glob("suite*.yaml"))),
 ]

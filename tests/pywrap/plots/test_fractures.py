@@ -114,6 +114,25 @@ def test_rubble_that_flies_off_does_not_shrink_the_picture(make_cracked_run, dat
     assert (low, high) == pytest.approx((-0.42, 4.42))
 
 
+def test_cracks_far_smaller_than_the_bodies_are_shown_alone(folder, data_folder, monkeypatch):
+    whole = np.ptp(fractures.figure([folder], data_folder).axes[0].get_xlim())
+    monkeypatch.setattr(fractures, "CLOSER", 10.0)
+    panel = fractures.figure([folder], data_folder).axes[0]
+    assert np.ptp(panel.get_xlim()) != whole
+    drawn = np.concatenate([lines_in(panel, colour) for _, colour in MODES.values()])
+    for component, (low, high) in enumerate((panel.get_xlim(), panel.get_ylim())):
+        assert (drawn[..., component] > low).all()
+        assert (drawn[..., component] < high).all()
+
+
+def test_large_bodies_are_drawn_in_metres(folder, data_folder, monkeypatch):
+    monkeypatch.setattr(fractures, "METRES", 1.0)
+    text = words(fractures.figure([folder], data_folder))
+    assert "x [m]" in text
+    assert "y [m]" in text
+    assert "[mm]" not in text
+
+
 def test_series_shows_a_panel_a_run(make_cracked_run, data_folder):
     folders = [
         make_cracked_run("sandstone_soft_p00"),
