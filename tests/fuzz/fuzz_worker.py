@@ -10,6 +10,7 @@ import contextlib
 import io
 import json
 import os
+import re
 import resource
 import shutil
 import subprocess
@@ -34,6 +35,7 @@ from lithofrac.scenes import _gmsh, make_mesh
 
 GOOD = ("result", "large", "refused", "stopped")
 MOST_ELEMENTS, MOST_STEPS = 20_000, 100
+PROGRESS = re.compile(r"[\w.@-]+: step \d+ of \d+ ")
 MOST_LETTERS = 1500  # of a sentence: one may list all keys of a section
 MOST_MEMORY = 6_000_000_000
 WITH_PLATENS = ("plane_strain", "punch", "brazilian", "hole")
@@ -177,7 +179,7 @@ def _judge_words(code: int, said: str) -> None:
     if code and not lines:
         raise Failure("words", f"exit code {code} without a word")
     progress = [line for line in lines if not line.startswith("lithofrac: ")]
-    if code == 2 and progress:
+    if (code == 2 and progress) or not all(PROGRESS.match(line) for line in progress):
         raise Failure("words", said)
     if any(len(line) > MOST_LETTERS or not line.isprintable() for line in lines):
         raise Failure("words", said)

@@ -177,6 +177,13 @@ def test_meshes_that_no_machine_holds(refused, case, key, value):
     assert said.endswith(" elements, expected at most 2000000\n")
 
 
+def test_platens_that_no_machine_holds(refused):
+    assert refused("punch_gf60", "--set", "platens.thickness_mm=1e7") == (
+        "lithofrac: configs/cases/punch.yaml: platens.element_size_over_rock = 2: about 1.9e+08 "
+        "elements of platens, expected at most 2000000\n"
+    )
+
+
 @pytest.mark.parametrize(
     ("case", "key", "value"),
     [

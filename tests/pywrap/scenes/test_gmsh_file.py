@@ -320,6 +320,21 @@ def test_a_file_of_other_words_is_refused(refused, tmp_path):
     assert "\n" not in said
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    ("place", "message"),
+    [
+        ("1e155 -1e194", "holds a node at 1e+194, expected at most 1e+12"),
+        ("nan 0", "holds nodes at no place, expected numbers"),
+        ("1e400 0", "holds nodes at no place, expected numbers"),
+    ],
+)
+def test_nodes_that_are_nowhere_are_refused(refused, tmp_path, place, message):
+    by_gmsh(SQUARE + GROUPS, tmp_path / "own.msh", "-format", "msh22")
+    text = re.sub(r"(?m)^1 0 0 0$", f"1 {place} 0", (tmp_path / "own.msh").read_text())
+    assert refused(text, CASE.replace("own.geo", "own.msh"), name="own.msh") == message
+
+
 def test_a_mesh_file_that_has_lost_an_end_is_refused(refused, tmp_path, capfd):
     by_gmsh(SQUARE + GROUPS, tmp_path / "own.msh", "-format", "msh22")
     text = (tmp_path / "own.msh").read_text().replace("$EndMeshFormat", "$EndMeshFromat")
