@@ -52,6 +52,8 @@ TABLES = {
     "errors": SANDSTONE,
     "tautona": [QUARTZITE],
     **{"zigong": [], "zigong_fit": []},
+    "zigong_prediction": ["configs/materials/sandstone.yaml"],
+    "zigong_prediction_error": ["configs/materials/sandstone.yaml"],
     "kirsch": [run for run in RUNS if "/kirsch" in run],
     "run_time": RUNS,
     **{"cracks": RUNS, "bands": RUNS, "punch": OWN},

@@ -10,22 +10,51 @@ import lithofrac
 from lithofrac._build import NATIVE
 
 
+class _Screen(argparse.RawDescriptionHelpFormatter):
+    """Lists commands one a line, without a line for their argument: help that fits a screen."""
+
+    def _format_action(self, action: argparse.Action) -> str:
+        if action.nargs != argparse.PARSER:
+            return super()._format_action(action)
+        self._dedent()  # the width of the column leaves no room for two levels
+        _, commands = super()._format_action(action).split("\n", 1)
+        self._indent()
+        return commands
+
+
 def parser() -> argparse.ArgumentParser:
     """The whole command line; `command` of what it parses is the name of the command."""
     found = argparse.ArgumentParser(
         prog="lithofrac",
+        usage="lithofrac [--help | --version] COMMAND ...",
         description="Rock fracture benchmarks: continuum with a crack band, explicit in time.",
         epilog="example: lithofrac run sandstone_triaxial_p10 --out out/p10\n"
-        "exit codes: 0 good, 2 bad input, 3 numerical failure, 4 numbers moved,\n"
-        "            130 interrupted",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        "`lithofrac COMMAND --help` shows the options of a command and an example.\n"
+        "exit: 0 good, 2 bad input, 3 numerical failure, 4 numbers moved, 130 interrupted",
+        formatter_class=_Screen,
+        add_help=False,
     )
+    found.add_argument("-h", "--help", action="help", help=argparse.SUPPRESS)
     version = f"lithofrac {lithofrac.__version__}, native: {str(NATIVE).lower()}"
-    found.add_argument("--version", action="version", version=version)
+    found.add_argument("--version", action="version", version=version, help=argparse.SUPPRESS)
     commands = found.add_subparsers(
-        title="commands", metavar="COMMAND", dest="command", required=True
+        title="commands", metavar="COMMAND", dest="command", required=True, prog="lithofrac"
     )
-    for add in (_check, _mesh, _run, _plot, _report, _gallery, _point, _compare, _references):
+    for add in (
+        _init,
+        _check,
+        _mesh,
+        _run,
+        _study,
+        _show,
+        _plot,
+        _report,
+        _gallery,
+        _point,
+        _fit,
+        _compare,
+        _references,
+    ):
         add(commands)
     return found
 
@@ -43,6 +72,11 @@ MOST_THREADS = max(64, 4 * (os.cpu_count() or 1))  # far more than help, far few
 REFERENCES = Path("tests/references")
 GALLERY = Path("reports/gallery")
 CASE = "case file (.yaml) or name in the suite; NAME@seed2 is another mesh"
+
+
+def _init(commands) -> None:
+    one = _command(commands, "init", "start a project of your own in a new folder", "my_rock")
+    one.add_argument("name", type=_path, metavar="NAME", help="folder to make; must not be there")
 
 
 def _check(commands) -> None:
@@ -79,6 +113,26 @@ def _run(commands) -> None:
     _source_of_case(one)
 
 
+def _show(commands) -> None:
+    one = _command(commands, "show", "print the summaries of runs side by side", "out/runs/punch_*")
+    one.add_argument("run", nargs="+", type=Path, metavar="DIR", help="results folder")
+
+
+def _study(commands) -> None:
+    one = _command(
+        commands,
+        "study",
+        "run a study: its cases, a table, a figure",
+        "study.yaml --out out --cores 4",
+    )
+    one.add_argument("file", type=_path, metavar="FILE", help="study file (.yaml)")
+    one.add_argument(
+        "--out", type=_path, metavar="DIR", help="results folder; none: check and list the runs"
+    )
+    one.add_argument("--cores", type=_threads, metavar="N", help="runs at a time, default all")
+    one.add_argument("--quiet", action="store_true", help="print errors only")
+
+
 def _plot(commands) -> None:
     one = _command(
         commands,
@@ -88,7 +142,9 @@ def _plot(commands) -> None:
     )
     one.add_argument("kind", metavar="KIND", help="what to draw; an unknown word lists all")
     one.add_argument("input", nargs="*", type=Path, metavar="INPUT", help="results folder or file")
-    one.add_argument("--out", type=_path, required=True, metavar="FILE", help=".svg .png .pdf .csv")
+    one.add_argument(
+        "--out", type=_path, required=True, metavar="FILE", help=".svg .png .pdf .csv .parquet .gif"
+    )
     one.add_argument("--data", type=Path, metavar="DIR", help="measured data, default data/")
 
 
@@ -134,6 +190,50 @@ def _point(commands) -> None:
     )
     one.add_argument(
         "--out", type=_path, required=True, metavar="FILE", help="curve, .parquet, or a folder"
+    )
+
+
+FIT_FORMS = """tests as CSV, compression positive, one of two forms (files of both may be named):
+  strengths  confinement_MPa,strength_MPa   one row a test; sigma_1, not sigma_1 - sigma_3
+             (strength_min_MPa, strength_max_MPa and tests may stand beside them, unused)
+  curves     confinement_MPa,axial_strain,axial_stress_MPa   one row a point, in order of loading
+             also lateral_strain (extension positive) or volumetric_strain (dilation positive),
+             and test, a name, where two tests share a confinement
+strains are fractions counted from the isotropic state. Curves give E, with lateral strains also
+Poisson's ratio and dilation; everything else comes from --base, from TESTS.yaml beside TESTS.csv,
+or from --set. rock.svg, rock_parameters.csv and rock_residuals.csv are written beside rock.yaml.
+"""
+
+
+def _fit(commands) -> None:
+    one = _command(
+        commands,
+        "fit",
+        "fit a rock to triaxial tests",
+        "data/zigong/triaxial_strength.csv --base sandstone --set dilation_angle_deg=10\n"
+        "         --fit-on 10 30 50 70 --out out/zigong.yaml",
+    )
+    one.formatter_class = argparse.RawDescriptionHelpFormatter
+    one.epilog = f"{FIT_FORMS}\n{one.epilog}"
+    one.add_argument("tests", nargs="+", type=_path, metavar="TESTS", help="measured tests, .csv")
+    one.add_argument("--out", type=_path, required=True, metavar="FILE", help="material, .yaml")
+    one.add_argument("--base", metavar="ROCK", help="name or file of a material, see below")
+    one.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="a key of the material"
+    )
+    one.add_argument(
+        "--fit-on",
+        type=float,
+        nargs="+",
+        metavar="P",
+        help="confinements [MPa] to fit; the others are predicted (default: fit all)",
+    )
+    one.add_argument(
+        "--knots",
+        type=float,
+        nargs="+",
+        metavar="E",
+        help="plastic strains of the table (default: up to 6, where the curves bend most)",
     )
 
 

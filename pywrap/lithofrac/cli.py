@@ -6,7 +6,7 @@ modules are imported by the command that needs them.
 
 from __future__ import annotations
 
-import shutil
+import os
 import signal
 import subprocess
 import sys
@@ -14,36 +14,37 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithofrac.arguments import parser
+from lithofrac.intake import (
+    accepted,
+    case_of,
+    find_checkpoint,
+    made_of,
+    mesh_of,
+    prepare,
+    warn,
+)
 
 if TYPE_CHECKING:
     from argparse import Namespace
 
     from lithofrac.config import Case
-    from lithofrac.problem import Mesh, Problem
 
 GOOD, BAD_INPUT, NUMERICAL_FAILURE, MOVED, INTERRUPTED = 0, 2, 3, 4, 130
-MOST_STEPS = 1_000_000_000
-OWN_FILES = (
-    "summary.json",
-    "history.parquet",
-    "energy.parquet",
-    "probes.parquet",
-    "cracks.parquet",
-    "fragments.parquet",
-    "checkpoint.npz",
-    "checkpoint_previous.npz",
-    "fields.pvd",
-    "fields/frame_[0-9]*.vtu",
-    "fields/failed.vtu",
-    "mesh.npz",
-    "case.yaml",
-    "geometry.geo",
-    "geometry.msh",
-)  # what a run writes and the next one may delete
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run one command; returns its exit code."""
+    try:
+        try:
+            return _one_command(arguments)
+        finally:
+            sys.stdout.flush()  # not when Python ends, where a closed pipe is an error
+    except BrokenPipeError:  # `lithofrac check | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return GOOD
+
+
+def _one_command(arguments: list[str] | None) -> int:
     options = parser().parse_args(arguments)
     _print_anything()
     try:
@@ -51,9 +52,8 @@ def main(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("lithofrac: interrupted", file=sys.stderr)
         return INTERRUPTED
-    except BrokenPipeError:  # `lithofrac check | head`
-        sys.stderr.close()
-        return GOOD
+    except BrokenPipeError:
+        raise
     except Exception as error:
         code = _exit_code(error)
         if code is None:
@@ -76,6 +76,15 @@ def _exit_code(error: Exception) -> int | None:
     return NUMERICAL_FAILURE if names & {"CoreError", "MeshError"} else None
 
 
+def init(options: Namespace) -> int:
+    """Start a project in a new folder."""
+    from lithofrac.project import make
+
+    made = ", ".join(path.name for path in make(options.name))
+    print(f"{options.name}: {made}; README.md says how to go on")
+    return GOOD
+
+
 def check(options: Namespace) -> int:
     """Say what a run would use, and whether its input is right."""
     from lithofrac.config import load_suite
@@ -83,14 +92,12 @@ def check(options: Namespace) -> int:
 
     names = options.case or list(load_suite(options.suite or default_suite()).names)
     if len(names) == 1:
-        case = _case(names[0], options)
+        case = case_of(names[0], options)
         _print_plan(names[0], case)
-        _warn(names[0], case)
+        warn(names[0], case)
         return GOOD
     for name in names:
-        case = _case(name, options)
-        print(f"{name}: {case.title}")
-        _warn(name, case)
+        print(f"{name}: {case_of(name, options).title}")
     print(f"{len(names)} cases are right")
     return GOOD
 
@@ -102,9 +109,9 @@ def mesh(options: Namespace) -> int:
 
     if options.out.exists() and not options.out.is_file():
         raise ConfigError(f"--out {options.out}: is no regular file, expected a file to write")
-    made = _made(options.case, _case(options.case, options), options.seed)
+    made = made_of(options.case, case_of(options.case, options), options.seed)
     options.out.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(options.out, lambda part: _save(made, part))
+    write_whole(options.out, made.save)
     print(f"{options.out}: {len(made.triangles)} elements, {len(made.nodes)} nodes")
     return GOOD
 
@@ -114,14 +121,14 @@ def run(options: Namespace) -> int:
     from lithofrac.progress import Progress
     from lithofrac.run import simulate
 
-    case = _case(options.case, options)
-    made = _mesh_of(case, options)
-    problem, _ = _accepted(options.case, case, made)
+    case = case_of(options.case, options)
+    made = mesh_of(case, options)
+    problem, _ = accepted(options.case, case, made)
     if options.resume:
-        _find_checkpoint(options.out, problem)
+        find_checkpoint(options.out, problem)
     name = Path(options.case).stem if options.case.endswith((".yaml", ".yml")) else options.case
-    _prepare(options, case, made)
-    warnings = _warn(name, case, quiet=options.quiet)
+    prepare(options, case, made)
+    warnings = warn(name, case, quiet=options.quiet)
     progress = Progress(name)
     before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
     try:
@@ -149,6 +156,35 @@ def run(options: Namespace) -> int:
         signal.signal(signal.SIGTERM, before)
     if not options.quiet:
         _print_summary(name, summary, options.out)
+    return GOOD
+
+
+def show(options: Namespace) -> int:
+    """Print the summaries of runs."""
+    from lithofrac.analysis.overview import overview
+
+    print(overview(_present(options.run)))
+    return GOOD
+
+
+def study(options: Namespace) -> int:
+    """Run what a study lacks, and write its table and its figure."""
+    from lithofrac.study import checked, start
+
+    asked, texts = checked(options.file)
+    if options.out is None:
+        for name in asked.names:
+            own = ", ".join(f"{key} = {value}" for key, value in asked.overrides(name).items())
+            print(f"{name}: {own}" if own else f"{name}: as the base")
+        print(f"{len(texts)} runs are right; --out DIR runs them")
+        return GOOD
+    before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
+    try:
+        start(options.file, texts, options.out, options.cores, options.quiet)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    if not options.quiet:
+        print(f"{len(texts)} runs; {options.out}/table.parquet, {options.out}/figure.svg")
     return GOOD
 
 
@@ -216,6 +252,15 @@ def point(options: Namespace) -> int:
     return GOOD
 
 
+def fit(options: Namespace) -> int:
+    """Fit a rock to triaxial tests and write its material file."""
+    from lithofrac.own_rock import fit as fit_to
+
+    o = options
+    print("\n".join(fit_to(o.tests, o.out, o.base, o.set, o.fit_on, o.knots)))
+    return GOOD
+
+
 def compare(options: Namespace) -> int:
     """Hold runs against the references; what moved is printed."""
     from lithofrac.analysis.references import read
@@ -242,13 +287,17 @@ def references(options: Namespace) -> int:
 
 
 COMMANDS = {
+    "init": init,
     "check": check,
     "mesh": mesh,
     "run": run,
+    "study": study,
+    "show": show,
     "plot": plot,
     "report": report,
     "gallery": gallery,
     "point": point,
+    "fit": fit,
     "compare": compare,
     "references": references,
 }
@@ -259,21 +308,6 @@ def _print_anything() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
-
-
-def _warn(name: str, case: Case, quiet: bool = False) -> list[str]:
-    """Print and return what is doubtful about a case."""
-    from lithofrac.config.doubts import doubts
-
-    found = doubts(case)
-    for sentence in [] if quiet else found:
-        print(f"lithofrac: warning: {name}: {sentence}", file=sys.stderr)
-    return found
-
-
-def _save(mesh: Mesh, path: Path) -> None:
-    with open(path, "wb") as file:  # a handle, so that no suffix is added
-        mesh.save(file)
 
 
 def _present(paths: list[Path]) -> list[Path]:
@@ -292,109 +326,11 @@ def _present(paths: list[Path]) -> list[Path]:
     return paths
 
 
-def _case(name: str, options: Namespace) -> Case:
-    from lithofrac.config.setting import settings
-    from lithofrac.config.suite import find_case
-
-    return find_case(name, options.suite, settings(options.set))
-
-
-def _mesh_of(case: Case, options: Namespace) -> Mesh:
-    """Mesh of the folder that is resumed, of the file that is named, or a new one."""
-    from lithofrac.config import ConfigError
-    from lithofrac.problem import Mesh
-
-    path = options.out / "mesh.npz" if options.resume else options.mesh
-    if path is None:
-        return _made(options.case, case)
-    if options.resume and not path.exists():
-        raise ConfigError(f"{path}: no such file, there is no run to resume in {options.out}")
-    return Mesh.load(path)
-
-
-def _made(name: str, case: Case, seed: int | None = None) -> Mesh:
-    """A new mesh of a case."""
-    from lithofrac.config import ConfigError
-    from lithofrac.scenes import make_mesh
-
-    try:
-        return make_mesh(case, seed)
-    except ConfigError as error:
-        raise ConfigError(f"{name}: {error}") from None
-
-
-def _accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
-    """Problem of a case and its plan, once scene and core have taken both; nothing is written."""
-    from lithofrac.config import ConfigError
-    from lithofrac.errors import CoreError
-    from lithofrac.run import plan
-    from lithofrac.scenes import make_problem
-
-    try:
-        problem = make_problem(case, mesh)
-        expected = plan(problem)
-    except (ConfigError, CoreError) as error:
-        lines = str(error).splitlines()
-        raise ConfigError("\n".join(f"{name}: {line}" for line in lines)) from None
-    if expected["steps"] > MOST_STEPS:
-        key = "hold_transits" if getattr(case.loading, "speed_m_s", None) is None else "speed_m_s"
-        raise ConfigError(
-            f"{name}: loading.{key} = {getattr(case.loading, key):g}: the run takes "
-            f"{expected['steps']:.3g} steps, expected at most {MOST_STEPS}"
-        )
-    elements, steps = expected["elements"], expected["steps"]
-    if elements * steps > case.budget_element_steps:
-        raise ConfigError(
-            f"{name}: budget_element_steps = {case.budget_element_steps:g}: the run takes "
-            f"{elements} elements times {steps} steps, {elements * steps:.3g}"
-        )
-    return problem, expected
-
-
-def _find_checkpoint(out: Path, problem: Problem) -> None:
-    """Refuse to resume before anything is written when no checkpoint fits."""
-    from lithofrac.errors import CheckpointError, CoreError
-    from lithofrac.results import checkpoint
-
-    try:
-        checkpoint.read(out, checkpoint.fingerprint(problem))
-    except CoreError as error:
-        raise CheckpointError(f"--resume: {error}") from None
-
-
-def _prepare(options: Namespace, case: Case, mesh: Mesh) -> None:
-    """Make the results folder; what an earlier run left there goes, unless it is resumed."""
-    from lithofrac.config import ConfigError
-    from lithofrac.config.setting import kept, text_of
-    from lithofrac.results.files import write_whole
-
-    out, named = options.out, Path(options.case)
-    copy, (case, beside) = out / "case.yaml", kept(case)
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        if options.resume:
-            return
-        if copy.exists() and named.exists() and copy.samefile(named):
-            raise ConfigError(f"--out {out}: the run would replace its case file {named}")
-        for geometry, source in beside.items():
-            if (out / geometry).exists() and source.samefile(out / geometry):
-                raise ConfigError(f"--out {out}: the run would replace its geometry {source}")
-        for pattern in OWN_FILES:
-            for path in out.glob(pattern):
-                path.unlink()
-        write_whole(out / "mesh.npz", mesh.save)
-        write_whole(copy, lambda part: part.write_text(text_of(case)))
-        for geometry, source in beside.items():
-            write_whole(out / geometry, lambda part, source=source: shutil.copyfile(source, part))
-    except OSError as error:
-        raise ConfigError(f"--out {out}: cannot be written ({error.strerror})") from None
-
-
 def _print_plan(name: str, case: Case) -> None:
     import numpy as np
 
-    made = _made(name, case)
-    problem, expected = _accepted(name, case, made)
+    made = made_of(name, case)
+    problem, expected = accepted(name, case, made)
     of_case = [i for i, material in enumerate(problem.materials) if material == case.material]
     rock = np.isin(made.body, of_case)
     width = float(case.material.band_width_of(made.areas()[rock].max()))

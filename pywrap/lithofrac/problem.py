@@ -54,14 +54,15 @@ class Mesh:
     def save(self, path: Path) -> None:
         """Write to an .npz without pickled objects."""
         sets = {f"edges:{name}": edges for name, edges in self.edge_sets.items()}
-        np.savez(
-            path,
-            nodes=self.nodes,
-            triangles=self.triangles,
-            body=self.body,
-            body_names=np.array(self.body_names),
-            **sets,
-        )
+        with open(path, "wb") as file:  # a handle, so that no suffix is added
+            np.savez(
+                file,
+                nodes=self.nodes,
+                triangles=self.triangles,
+                body=self.body,
+                body_names=np.array(self.body_names),
+                **sets,
+            )
 
     @classmethod
     def load(cls, path: Path) -> Mesh:

@@ -44,7 +44,9 @@ class Progress:
                 file=self.stream, dynamic_ncols=True,
             )  # fmt: skip
         self.bar.set_postfix_str(
-            f"{report['rate'] / 1e6:.0f}M el/s, residual {report['residual']:.0e}", refresh=False
+            f"{report['rate'] / 1e6:.0f}M el/s, {report['cracks']} cracks, "
+            f"residual {report['residual']:.0e}",
+            refresh=False,
         )
         self.bar.update(report["step"] - self.bar.n)
 

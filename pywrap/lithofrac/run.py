@@ -18,13 +18,15 @@ import numpy as np
 
 import lithofrac
 from lithofrac._build import NATIVE
+from lithofrac.analysis.crack_faces import find_faces
+from lithofrac.analysis.frames import MM, Frame
 from lithofrac.analysis.strength import first_peak
 from lithofrac.core import ContactStatistics, Run
 from lithofrac.errors import CoreError
 from lithofrac.problem import Problem
 from lithofrac.results import checkpoint
 from lithofrac.results.cracks import crack_table, fragment_table
-from lithofrac.results.fields import write_frame, write_series
+from lithofrac.results.fields import write_cracks, write_frame, write_series
 from lithofrac.results.files import write_json, write_table
 from lithofrac.results.recorder import Recorder
 
@@ -128,7 +130,7 @@ class _Session:
         self.problem, self.out, self.threads, self.meta = problem, out, threads, meta
         self.run = Run(problem)
         self.recorder = Recorder(self.run)
-        self.frames: list[tuple[float, str]] = []
+        self.frames: list[tuple] = []  # time [s], files
         self.mark = checkpoint.fingerprint(problem)
         self.steps = math.ceil(problem.end_time / self.run.dt)
         self.every = max(1, self.steps // problem.records)
@@ -151,8 +153,7 @@ class _Session:
         self.recorder.restore(arrays)
         self.core_before, self.wall_before = arrays["clocks"]
         self.frames = [
-            (float(moment), f"fields/frame_{i:04d}.vtu")
-            for i, moment in enumerate(arrays["frames"])
+            (float(moment), *self._names(i)) for i, moment in enumerate(arrays["frames"])
         ]
         self.first_step = self.run.step
 
@@ -163,7 +164,7 @@ class _Session:
             {
                 "state": self.run.save(),
                 "clocks": np.array([self.core_seconds, self.wall_seconds]),
-                "frames": np.array([moment for moment, _ in self.frames]),
+                "frames": np.array([moment for moment, *_ in self.frames]),
                 **self.recorder.arrays(),
             },
         )
@@ -192,9 +193,24 @@ class _Session:
         self.recorder.record()
         due = self.run.step / self.steps * max(1, self.problem.fields - 1)
         if self.problem.fields and due >= len(self.frames):
-            name = f"fields/frame_{len(self.frames):04d}.vtu"
-            write_frame(self.out / name, self.run)
-            self.frames.append((self.run.step * self.run.dt, name))
+            self._write_fields()
+
+    def _names(self, number: int) -> list[str]:
+        """Files of a frame: the mesh, and the cracks where they may open."""
+        cracks = [] if self.problem.fracture is None else [f"fields/cracks_{number:04d}.vtu"]
+        return [f"fields/frame_{number:04d}.vtu", *cracks]
+
+    def _write_fields(self) -> None:
+        moment, names = self.run.step * self.run.dt, self._names(len(self.frames))
+        write_frame(self.out / names[0], self.run)
+        if len(names) > 1:
+            frame, table = Frame.load(self.out / names[0], moment), crack_table(self.run)
+            faces = find_faces(frame, table)
+            write_cracks(
+                self.out / names[1], frame.nodes / MM, frame.displacement / MM,
+                faces.edges, table.iloc[faces.crack],
+            )  # fmt: skip
+        self.frames.append((moment, *names))
 
     def _progress(self) -> dict:
         done = self.run.step - self.first_step

@@ -51,7 +51,7 @@ class Failure(Exception):
 
 def limit_runs() -> None:
     """Let the command line mesh and run small cases alone, and take few steps."""
-    case_of, accepted = cli._case, cli._accepted
+    case_of, accepted = cli.case_of, cli.accepted
 
     def small_case(*arguments):
         case = case_of(*arguments)
@@ -72,7 +72,7 @@ def limit_runs() -> None:
         few = {"records": min(problem.records, 20), "fields": min(problem.fields, 2)}
         return replace(problem, end_time=end, **few), expected
 
-    cli._case, cli._accepted = small_case, short
+    cli.case_of, cli.accepted = small_case, short
 
 
 def write_meshes(folder: str) -> None:
@@ -209,7 +209,7 @@ def _judge_numbers(results: Path) -> None:
         bad = ~np.isfinite(table.to_numpy(dtype=float)).all(axis=0)
         if bad.any():
             raise Failure("nan", f"{path.name}: {', '.join(table.columns[bad])}")
-    for path in results.glob("fields/*.vtu"):
+    for path in results.glob("fields/frame_*.vtu"):
         with contextlib.redirect_stdout(io.StringIO()):
             frame = meshio.read(path)
         fields = frame.point_data | {name: parts[0] for name, parts in frame.cell_data.items()}

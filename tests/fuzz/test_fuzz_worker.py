@@ -9,7 +9,7 @@ import fuzz_worker
 import numpy as np
 import pandas as pd
 import pytest
-from fuzz_bases import CASES, MATERIALS
+from fuzz_bases import CASES, MATERIALS, OTHER_MSH
 from fuzz_mutants import Mutant, mutant
 
 from lithofrac import cli
@@ -28,7 +28,7 @@ RIGHT = Mutant(
 @pytest.fixture
 def verdict(monkeypatch):
     """verdict() on the right case, with few steps; the command line is as before afterwards."""
-    for name in ("_case", "_accepted"):
+    for name in ("case_of", "accepted"):
         monkeypatch.setattr(cli, name, getattr(cli, name))
     monkeypatch.setattr(fuzz_worker, "MOST_STEPS", 10)
     fuzz_worker.limit_runs()
@@ -42,7 +42,7 @@ def test_a_right_case_ends_in_a_result_of_few_steps(verdict):
 
 
 def test_a_seed_always_gives_the_same_mutant():
-    meshes = {name: b"PK" + bytes(range(200)) for name in CASES}
+    meshes = {name: bytes(range(200)) for name in (*CASES, "own_22.msh", *OTHER_MSH)}
     texts = [seed for seed in range(60) if not _reads_a_mesh(seed, meshes)]
     assert len(texts) > 30
     assert [mutant(seed, meshes) for seed in texts] == [mutant(seed, meshes) for seed in texts]

@@ -92,7 +92,11 @@ def frame_times(folder: Path) -> list[tuple[float, Path]]:
         When the run has written no fields.
     """
     series = ElementTree.parse(folder / "fields.pvd").getroot().iter("DataSet")
-    return sorted((float(entry.get("timestep")), folder / entry.get("file")) for entry in series)
+    return sorted(
+        (float(entry.get("timestep")), folder / entry.get("file"))
+        for entry in series
+        if entry.get("part") == "0"  # the others are lines of cracks
+    )
 
 
 def last_frame(folder: Path) -> Frame:

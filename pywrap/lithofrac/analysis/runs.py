@@ -132,3 +132,17 @@ def find_runs(paths: list[Path]) -> list[Run]:
     paths = [Path(path) for path in paths if not is_bench(path)]
     folders = [path if path.is_dir() else path.parent for path in paths]
     return [Run(folder) for folder in dict.fromkeys(folders)]
+
+
+def only_run(paths: list[Path], kind: str) -> Run:
+    """The run of folders or files of which there must be one, for a plot of a kind.
+
+    Raises
+    ------
+    DataError
+        When there are several, or none.
+    """
+    runs = find_runs(paths)
+    if len(runs) != 1:
+        raise DataError(f"plot {kind}: {len(runs)} runs, expected one")
+    return runs[0]

@@ -74,10 +74,8 @@ def scalars(runs: list[Run], data: Path) -> pd.DataFrame:
         When a run did not complete, or rows of a table cannot be told apart.
     """
     rows = [row for run in runs for row in _of_summary(run)]
-    for name, table in TABLES.items():
-        asked = [run.folder for run in runs if not table.scenes or run.test in table.scenes]
-        if asked:
-            rows += _of_table(name, table, table.make(asked, data))
+    for name in TABLES:
+        rows += table_rows(name, runs, data)
     found = pd.DataFrame(rows, columns=["case", "quantity", "value", "nature"])
     twice = found.duplicated(["case", "quantity"])
     if twice.any():
@@ -121,10 +119,14 @@ def _of_summary(run: Run) -> list[tuple]:
     return rows
 
 
-def _of_table(name: str, table: Table, made: pd.DataFrame) -> list[tuple]:
-    """Rows of a table; the keys of its rows stand in brackets behind the column."""
+def table_rows(name: str, runs: list[Run], data: Path) -> list[tuple]:
+    """Rows of one of `TABLES`, as in `scalars`; keys stand in brackets behind the column."""
+    table = TABLES[name]
+    asked = [run.folder for run in runs if not table.scenes or run.test in table.scenes]
+    if not asked:
+        return []
     rows = []
-    for row in made.to_dict("records"):
+    for row in table.make(asked, data).to_dict("records"):
         which = ",".join(str(row[key]) for key in table.keys)
         for column in table.columns:
             quantity = f"{name}.{column}" + (f"[{which}]" if which else "")

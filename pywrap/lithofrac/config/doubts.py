@@ -25,7 +25,10 @@ def doubts(case: Case) -> list[str]:
 
 
 def _flow_doubts(key: str, material: Material) -> list[str]:
-    """Flow that dilates more than friction resists gives off energy; the first row is named."""
+    """Flow that dilates more than friction resists; the first such row is named.
+
+    Its work is negative under a pressure that is high enough.
+    """
     if material.elastic or not material.compression or material.plastic_strain is None:
         return []
     rows = zip(material.friction_angle_deg, material.dilation_angle_deg, strict=True)
@@ -33,7 +36,7 @@ def _flow_doubts(key: str, material: Material) -> list[str]:
         if dilation > friction:
             return [
                 f"{key}.dilation_angle_deg.{row} = {dilation:g}: above friction_angle_deg.{row} = "
-                f"{friction:g}, where flow gives off energy"
+                f"{friction:g}, where flow under a high pressure gives off energy"
             ]
     return []
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from lithofrac.config.case import Case
 from lithofrac.config.material import Material
+from lithofrac.config.study import Study
 from lithofrac.config.suite import Suite
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -38,6 +39,7 @@ def schemas() -> dict[str, dict]:
         section.pop("required", None)
     found = {"case": case, "material": Material.model_json_schema()}
     found["suite"] = Suite.model_json_schema()
+    found["study"] = Study.model_json_schema()
     return {name: {"$schema": DIALECT, **schema} for name, schema in found.items()}
 
 

@@ -1,4 +1,4 @@
-"""What `lithofrac plot KIND INPUT... --out FILE` does: a figure, or its numbers as CSV."""
+"""What `lithofrac plot KIND INPUT... --out FILE` does: a figure, its numbers, or a GIF."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -17,26 +17,34 @@ from lithofrac.analysis import (
 )
 from lithofrac.analysis.claims import claims
 from lithofrac.analysis.punch import punch as punch_table
+from lithofrac.analysis.study import study_table
 from lithofrac.analysis.variants import variants as variants_table
+from lithofrac.analysis.zigong_prediction import zigong_prediction, zigong_prediction_error
 from lithofrac.data import DataError
 from lithofrac.plots import (
+    animation,
+    curves,
     energy,
     events,
     evolution,
     fractures,
     gallery,
+    gauges,
     hole,
     measured,
     mesh,
+    pattern,
     punch,
     punch_patterns,
     sandstone,
     single_element,
     size_effect,
     stiffness,
+    study,
     style,
     variants,
 )
+from lithofrac.results.files import write_table, write_whole
 
 FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "single_element": single_element.figure,
@@ -45,6 +53,9 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "stiffness_sweep": stiffness.figure,
     "measured": measured.figure,
     "mesh": mesh.figure,
+    "curves": curves.figure,
+    "pattern": pattern.figure,
+    "gauges": gauges.figure,
     "energy": energy.figure,
     "gallery": gallery.figure,
     "fractures": fractures.figure,
@@ -57,6 +68,7 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "size_effect": size_effect.figure,
     "punch_patterns": punch_patterns.figure,
     "variants": variants.figure,
+    "study": study.figure,
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "single_element": tables.single_element,
@@ -66,6 +78,8 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "tautona": tables.tautona,
     "zigong": tables.zigong,
     "zigong_fit": tables.zigong_fit,
+    "zigong_prediction": zigong_prediction,
+    "zigong_prediction_error": zigong_prediction_error,
     "kirsch": tables.kirsch,
     "run_time": tables.run_time,
     "cracks": discrete.cracks,
@@ -78,18 +92,21 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "variants": variants_table,
     "results": results.verdicts,
     "claims": claims,
+    "study": study_table,
 }
+MOVIES: dict[str, Callable[[list[Path], Path, Path], None]] = {"animation": animation.write}
 FORMATS = (".svg", ".png", ".pdf")
+NUMBERS = (".csv", ".parquet")
 
 
 def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> None:
-    """Draw a figure, or write a table when `out` ends in `.csv`.
+    """Draw a figure, write a table when `out` ends in `.csv` or `.parquet`, an animation in `.gif`.
 
     Parameters
     ----------
-    kind : a key of `FIGURES` or `TABLES`
+    kind : a key of `FIGURES`, `TABLES` or `MOVIES`
     inputs : results folders or files in them, bench curves, or a material; what the kind needs
-    out : file to write, .svg, .png, .pdf or .csv
+    out : file to write, .svg, .png, .pdf, .csv, .parquet or .gif
     data : the folder `data/`, by default that of the working folder
 
     Raises
@@ -98,26 +115,14 @@ def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> 
         When the kind or format is unknown, an input is missing, or a data file is wrong.
     """
     data = Path("data") if data is None else data
-    known = TABLES if out.suffix == ".csv" else FIGURES
-    if out.suffix not in (*FORMATS, ".csv"):
-        raise DataError(
-            f"{out}: format {out.suffix!r}, expected one of {', '.join((*FORMATS, '.csv'))}"
-        )
-    if kind not in known:
-        what, suffixes, other = "figure", ".csv", TABLES
-        if known is TABLES:
-            what, suffixes, other = "table", "/".join(FORMATS), FIGURES
-        raise DataError(
-            f"plot: no {what} {kind!r}, expected one of {', '.join(known)}; "
-            f"with --out *{suffixes}: {', '.join(other)}"
-        )
+    known = _known(kind, out)
     missing = [str(path) for path in inputs if not Path(path).exists()]
     if missing:
         raise DataError(f"{missing[0]}: no such file or folder, expected an input of the plot")
-    if known is FIGURES and not inputs:
+    if known is not TABLES and not inputs:
         raise DataError(f"plot {kind}: no input, expected results folders or files to draw")
     try:
-        made = known[kind](inputs, data)
+        made = known[kind](inputs, data, out) if known is MOVIES else known[kind](inputs, data)
     except FileNotFoundError as error:  # an input that lies in no results folder
         raise DataError(
             f"plot {kind}: {error.filename or error}: no such file, expected an input in a results "
@@ -125,8 +130,35 @@ def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> 
         ) from None
     if known is FIGURES:
         style.save(made, out)
+    if known is not TABLES:
         return
     out.parent.mkdir(parents=True, exist_ok=True)
-    part = out.with_name(f".{out.name}.part")
-    made.to_csv(part, index=False)
-    part.replace(out)
+    if out.suffix == ".parquet":
+        write_table(out, made)
+    else:
+        write_whole(out, lambda part: made.to_csv(part, index=False))
+
+
+def _known(kind: str, out: Path) -> dict[str, Callable]:
+    """The kinds that a format can hold, once `kind` is one of them.
+
+    Raises
+    ------
+    DataError
+        When it is not, or the format is none.
+    """
+    groups = {"figure": (FORMATS, FIGURES), "table": (NUMBERS, TABLES)}
+    groups["animation"] = ((".gif",), MOVIES)
+    for what, (suffixes, known) in groups.items():
+        if out.suffix not in suffixes:
+            continue
+        if kind in known:
+            return known
+        others = "; ".join(
+            f"with --out *{'/'.join(other)}: {', '.join(kinds)}"
+            for other, kinds in groups.values()
+            if kinds is not known
+        )
+        raise DataError(f"plot: no {what} {kind!r}, expected one of {', '.join(known)}; {others}")
+    formats = [suffix for suffixes, _ in groups.values() for suffix in suffixes]
+    raise DataError(f"{out}: format {out.suffix!r}, expected one of {', '.join(formats)}")

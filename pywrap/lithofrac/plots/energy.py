@@ -66,7 +66,7 @@ def draw_ledger(axes: Axes, run: Run) -> None:
         lw=0,
     )
     axes.plot(time, table["external_J"], "--", color=style.BLACK, label="external work")
-    axes.set(ylabel=f"energy [{_unit(run)}]", ylim=(0, None))
+    axes.set(ylabel=f"energy [{unit(run)}]", ylim=(0, None))
     _legend(axes)
 
 
@@ -80,7 +80,7 @@ def draw_small(axes: Axes, run: Run) -> None:
             axes.semilogy(
                 1e3 * table["time_s"], size.where(size > floor), dash, color=colour, label=label
             )
-    axes.set(ylabel=f"small entries\n[{_unit(run)}]", ylim=(floor, None))
+    axes.set(ylabel=f"small entries\n[{unit(run)}]", ylim=(floor, None))
     _legend(axes)
 
 
@@ -113,5 +113,6 @@ def _scale(run: Run) -> float:
     return max(part.abs().max() for part in parts) or 1.0
 
 
-def _unit(run: Run) -> str:
+def unit(run: Run) -> str:
+    """Unit of the energies of a run."""
     return f"J per {'radian' if run.axisymmetric else 'metre of depth'}"

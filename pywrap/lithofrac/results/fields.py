@@ -1,15 +1,30 @@
-"""Fields over the mesh as a VTU series with a .pvd that ParaView opens."""
+"""Fields over the mesh, and the cracks as lines, as a VTU series with a .pvd that ParaView opens.
+
+A series has the mesh as part 0 and, where cracks may open, their faces as part 1. Both stand at
+reference positions with `displacement_m`: one "Warp By Vector" deforms both alike.
+"""
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 import meshio
 import numpy as np
+import pandas as pd
 
 from lithofrac.core import Run
 from lithofrac.results.files import write_whole
+
+TENSOR, AXES = ("xx", "yy", "zz", "xy"), ("axis_1", "axis_2", "zz")
+COMPONENTS = {
+    "stress_Pa": TENSOR,
+    "strain": TENSOR,
+    "tensile_strength_Pa": AXES,
+    "fracturing_strain": AXES,
+}  # names that ParaView shows for the components of an array
+MODES = ("tensile", "compressive_dilation")  # the numbers 0 and 1 of the field `mode`
 
 
 def write_frame(path: Path, run: Run) -> None:
@@ -41,20 +56,63 @@ def write_frame(path: Path, run: Run) -> None:
         point_data=points,
         cell_data={name: [np.ascontiguousarray(values)] for name, values in cells.items()},
     )
-    write_whole(path, lambda part: meshio.write(part, grid, file_format="vtu"))
+    write_whole(path, lambda part: _write(part, grid))
 
 
-def write_series(path: Path, frames: list[tuple[float, str]]) -> None:
-    """Write the .pvd that lists the frames (time [s], file name relative to the .pvd)."""
+def write_cracks(
+    path: Path, nodes: np.ndarray, displacement: np.ndarray, edges: np.ndarray, rows: pd.DataFrame
+) -> None:
+    """Write the faces of cracks as lines with what is known of their cracks, one VTU file.
+
+    Parameters
+    ----------
+    path : file to write
+    nodes : (n, 2) reference positions of a mesh [m]
+    displacement : (n, 2) [m]
+    edges : (k, 2) nodes of each face; the two faces of a crack have nodes of their own
+    rows : (k) rows of the table of cracks, one an edge; k = 0 writes an empty file
+    """
+    used, ends = np.unique(edges, return_inverse=True)
+    cells = {
+        "crack": rows["crack"].to_numpy(int),
+        "mode": (rows["mode"] == MODES[1]).to_numpy(int),
+        "time_s": rows["time_s"].to_numpy(float),
+        "failure_factor": rows["failure_factor"].to_numpy(float),
+    }
+    grid = meshio.Mesh(
+        _with_zero(nodes[used]),
+        [("line", ends.reshape(-1, 2))],
+        point_data={"displacement_m": _with_zero(displacement[used])},
+        cell_data={name: [values] for name, values in cells.items()},
+    )
+    write_whole(path, lambda part: _write(part, grid))
+
+
+def write_series(path: Path, frames: list[tuple]) -> None:
+    """Write the .pvd that lists the frames.
+
+    A frame is its time [s] and the names of its files relative to the .pvd, one a part.
+    """
     rows = "".join(
-        f'    <DataSet timestep="{time:.9e}" part="0" file={quoteattr(name)}/>\n'
-        for time, name in frames
+        f'    <DataSet timestep="{time:.9e}" part="{part}" file={quoteattr(name)}/>\n'
+        for time, *names in frames
+        for part, name in enumerate(names)
     )
     text = (
         '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n'
         f"  <Collection>\n{rows}  </Collection>\n</VTKFile>\n"
     )
     write_whole(path, lambda part: part.write_text(text))
+
+
+def _write(path: Path, grid: meshio.Mesh) -> None:
+    """Write a VTU file, and in it the names of components, which meshio leaves out."""
+    meshio.write(path, grid, file_format="vtu")
+    tree = ElementTree.parse(path)
+    for array in tree.iter("DataArray"):
+        for number, name in enumerate(COMPONENTS.get(array.get("Name"), ())):
+            array.set(f"ComponentName{number}", name)
+    tree.write(path, xml_declaration=True, encoding="utf-8")
 
 
 def _with_zero(plane: np.ndarray) -> np.ndarray:

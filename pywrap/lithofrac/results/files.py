@@ -9,6 +9,25 @@ from pathlib import Path
 
 import pandas as pd
 
+OWN_FILES = (
+    "summary.json",
+    "history.parquet",
+    "energy.parquet",
+    "probes.parquet",
+    "cracks.parquet",
+    "fragments.parquet",
+    "checkpoint.npz",
+    "checkpoint_previous.npz",
+    "fields.pvd",
+    "fields/frame_[0-9]*.vtu",
+    "fields/cracks_[0-9]*.vtu",
+    "fields/failed.vtu",
+    "mesh.npz",
+    "case.yaml",
+    "geometry.geo",
+    "geometry.msh",
+)  # of a run: what the next one in the same folder may delete
+
 
 def write_whole(path: Path, write: Callable[[Path], None]) -> None:
     """Call `write(temporary path)`, flush to disk, rename to `path`.

@@ -27,9 +27,11 @@ NOT_WATCHED = {
     "tautona": "measured",
     "zigong": "measured",
     "zigong_fit": "measured",
+    **dict.fromkeys(("zigong_prediction", "zigong_prediction_error"), "measured"),
     **dict.fromkeys(("size_effect", "hole_fits", "hole_checks"), "made of hole_initiation"),
     "claims": "verdicts on runs that are watched",
     "variants": "differences between runs that are watched",
+    "study": "of the files of users",
     "run_time": "of the machine; the rest stands in summary.json",
     "results": "words made of the other tables",
 }

@@ -192,7 +192,7 @@ def test_platens_that_no_machine_holds(refused):
     ],
 )
 def test_runs_that_never_end(refused, monkeypatch, case, key, value):
-    monkeypatch.setattr("lithofrac.cli.MOST_STEPS", 1_000_000)
+    monkeypatch.setattr("lithofrac.intake.MOST_STEPS", 1_000_000)
     said = refused(case, "--set", f"{key}={value}")
     assert said.startswith(f"lithofrac: {case}: {key} = {value}: the run takes ")
     assert said.endswith(" steps, expected at most 1000000\n")

@@ -281,8 +281,8 @@ def test_a_name_that_the_terminal_cannot_show_stops_nothing(files, tmp_path, mon
         (
             "dilation_angle_deg: [0.0",
             "dilation_angle_deg: [18.0",
-            "material.dilation_angle_deg.0 = 18: above friction_angle_deg.0 = 17, where flow gives "
-            "off energy",
+            "material.dilation_angle_deg.0 = 18: above friction_angle_deg.0 = 17, where flow under "
+            "a high pressure gives off energy",
         ),
         (
             "density_kg_m3: 2800.0",
@@ -362,8 +362,8 @@ def test_a_mesh_replaces_no_device_and_leaves_no_half_file(files, tmp_path, caps
     )
     assert pipe.is_fifo()
 
-    def full(self, file):
-        file.write(b"half")
+    def full(self, part):
+        part.write_bytes(b"half")
         raise OSError(28, "No space left on device")
 
     before = sorted(tmp_path.rglob("*"))

@@ -1,5 +1,6 @@
 """Help, version, start-up time and exit codes of the words themselves (pywrap/lithofrac/cli.py)."""
 
+import os
 import subprocess
 import sys
 
@@ -23,6 +24,8 @@ def test_help_fits_a_screen():
     assert len(said) <= 24
     assert max(map(len, said)) <= 80
     assert any(line.startswith("example: lithofrac run") for line in said)
+    listed = [line.split()[0] for line in said if line.startswith("  ")]
+    assert listed == list(COMMANDS)
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -58,6 +61,22 @@ def test_the_package_and_its_words_are_imported_quickly():
         for _ in range(3)
     ]
     assert min(times) < 0.3
+
+
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["check", "--suite", "configs/suite_quick.yaml"]]
+)
+def test_a_reader_that_has_gone_is_no_error(arguments):
+    """As of `lithofrac check | head -1`; output is buffered, as it is in a pipe by default."""
+    read, write = os.pipe()
+    os.close(read)
+    buffered = {key: value for key, value in os.environ.items() if key != "PYTHONUNBUFFERED"}
+    done = subprocess.run(
+        [sys.executable, "-m", "lithofrac", *arguments],
+        stdout=write, stderr=subprocess.PIPE, text=True, env=buffered,
+    )  # fmt: skip
+    os.close(write)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_check_of_the_suite_names_every_case(capsys):

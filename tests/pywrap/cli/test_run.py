@@ -148,13 +148,14 @@ def test_a_log_gets_plain_lines_and_a_terminal_a_bar():
     for stream in (log, terminal):
         progress = Progress("bar", stream)
         progress(REPORT)
-        progress(REPORT | {"step": 100, "percent": 100.0})
+        progress(REPORT | {"step": 100, "percent": 100.0, "cracks": 7})
         progress.close()
     assert log.getvalue() == (
-        "bar: step 100 of 100 (100 %), 1.0000 ms, 25.0M element-steps/s, 0 cracks, "
+        "bar: step 100 of 100 (100 %), 1.0000 ms, 25.0M element-steps/s, 7 cracks, "
         "energy residual 1.0e-09, 12 s left\n"
     )
     assert "100%" in terminal.getvalue()
+    assert "7 cracks" in terminal.getvalue()
 
 
 def test_the_signal_of_a_time_limit_is_given_back(tmp_path):

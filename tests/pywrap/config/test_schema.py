@@ -16,10 +16,14 @@ FILES = [
     *((path, "case") for path in sorted((CONFIGS / "examples").glob("*.yaml"))),
     *((path, "material") for path in sorted((CONFIGS / "materials").glob("*.yaml"))),
     *((path, "suite") for path in sorted(CONFIGS.glob("suite*.yaml"))),
+    *((path, "study") for path in sorted((CONFIGS / "studies").glob("*.yaml"))),
+    (CONFIGS / "project" / "case.yaml", "case"),
+    (CONFIGS / "project" / "rock.yaml", "material"),
+    (CONFIGS / "project" / "study.yaml", "study"),
 ]
 
 
-@pytest.mark.parametrize("name", ["case", "material", "suite"])
+@pytest.mark.parametrize("name", ["case", "material", "suite", "study"])
 def test_schema_files_are_those_of_the_models(name):
     written = (CONFIGS / "schema" / f"{name}.schema.json").read_text()
     assert written == text_of(schemas()[name]), "python -m lithofrac.config.schema configs/schema"

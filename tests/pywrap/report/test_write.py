@@ -14,6 +14,7 @@ pytestmark = pytest.mark.no_core
 ROOT = Path(__file__).parents[3]
 SHEETS = ROOT / "reports" / "sheets"
 QUARTZITE = ROOT / "configs" / "materials" / "quartzite.yaml"
+SANDSTONE = QUARTZITE.with_name("sandstone.yaml")
 
 
 @pytest.fixture
@@ -30,12 +31,14 @@ def out(make_run, make_bench, data_folder, tmp_path):
         "claims": [ROOT / "reports" / "claims_bands.csv", *runs],
         "single_element": bench,
         "tautona": [QUARTZITE],
+        "zigong_prediction": [SANDSTONE],
+        "zigong_prediction_error": [SANDSTONE],
         "kirsch": [],
         "hole_checks": [ROOT / "reports" / "bands.csv", *runs],
         "variants": [ROOT / "configs" / "suite.yaml", *runs],
     }
     (tmp_path / "out" / "tables").mkdir(parents=True)
-    for name in TABLES:
+    for name in TABLES.keys() - {"study"}:  # which no sheet shows
         table = tmp_path / "out" / "tables" / f"{name}.csv"
         if name == "options":  # needs the compiled core
             table.write_text("rock,option\nsandstone,default\n")

@@ -1,0 +1,128 @@
+"""From the words of a command to a case, its mesh, its problem and its results folder.
+
+Heavy modules are imported by the function that needs them.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from lithofrac.config import Case
+    from lithofrac.problem import Mesh, Problem
+
+MOST_STEPS = 1_000_000_000
+
+
+def case_of(name: str, options: Namespace) -> Case:
+    """Case of a file or of the suite, with the settings of the command line."""
+    from lithofrac.config.setting import settings
+    from lithofrac.config.suite import find_case
+
+    return find_case(name, options.suite, settings(options.set))
+
+
+def warn(name: str, case: Case, quiet: bool = False) -> list[str]:
+    """Print and return what is doubtful about a case."""
+    from lithofrac.config.doubts import doubts
+
+    found = doubts(case)
+    for sentence in [] if quiet else found:
+        print(f"lithofrac: warning: {name}: {sentence}", file=sys.stderr)
+    return found
+
+
+def mesh_of(case: Case, options: Namespace) -> Mesh:
+    """Mesh of the folder that is resumed, of the file that is named, or a new one."""
+    from lithofrac.config import ConfigError
+    from lithofrac.problem import Mesh
+
+    path = options.out / "mesh.npz" if options.resume else options.mesh
+    if path is None:
+        return made_of(options.case, case)
+    if options.resume and not path.exists():
+        raise ConfigError(f"{path}: no such file, there is no run to resume in {options.out}")
+    return Mesh.load(path)
+
+
+def made_of(name: str, case: Case, seed: int | None = None) -> Mesh:
+    """A new mesh of a case."""
+    from lithofrac.config import ConfigError
+    from lithofrac.scenes import make_mesh
+
+    try:
+        return make_mesh(case, seed)
+    except ConfigError as error:
+        raise ConfigError(f"{name}: {error}") from None
+
+
+def accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
+    """Problem of a case and its plan, once scene and core have taken both; nothing is written."""
+    from lithofrac.config import ConfigError
+    from lithofrac.errors import CoreError
+    from lithofrac.run import plan
+    from lithofrac.scenes import make_problem
+
+    try:
+        problem = make_problem(case, mesh)
+        expected = plan(problem)
+    except (ConfigError, CoreError) as error:
+        lines = str(error).splitlines()
+        raise ConfigError("\n".join(f"{name}: {line}" for line in lines)) from None
+    if expected["steps"] > MOST_STEPS:
+        key = "hold_transits" if getattr(case.loading, "speed_m_s", None) is None else "speed_m_s"
+        raise ConfigError(
+            f"{name}: loading.{key} = {getattr(case.loading, key):g}: the run takes "
+            f"{expected['steps']:.3g} steps, expected at most {MOST_STEPS}"
+        )
+    elements, steps = expected["elements"], expected["steps"]
+    if elements * steps > case.budget_element_steps:
+        raise ConfigError(
+            f"{name}: budget_element_steps = {case.budget_element_steps:g}: the run takes "
+            f"{elements} elements times {steps} steps, {elements * steps:.3g}"
+        )
+    return problem, expected
+
+
+def find_checkpoint(out: Path, problem: Problem) -> None:
+    """Refuse to resume before anything is written when no checkpoint fits."""
+    from lithofrac.errors import CheckpointError, CoreError
+    from lithofrac.results import checkpoint
+
+    try:
+        checkpoint.read(out, checkpoint.fingerprint(problem))
+    except CoreError as error:
+        raise CheckpointError(f"--resume: {error}") from None
+
+
+def prepare(options: Namespace, case: Case, mesh: Mesh) -> None:
+    """Make the results folder; what an earlier run left there goes, unless it is resumed."""
+    from lithofrac.config import ConfigError
+    from lithofrac.config.setting import kept, text_of
+    from lithofrac.results.files import OWN_FILES, write_whole
+
+    out, named = options.out, Path(options.case)
+    copy, (case, beside) = out / "case.yaml", kept(case)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        if options.resume:
+            return
+        if copy.exists() and named.exists() and copy.samefile(named):
+            raise ConfigError(f"--out {out}: the run would replace its case file {named}")
+        for geometry, source in beside.items():
+            if (out / geometry).exists() and source.samefile(out / geometry):
+                raise ConfigError(f"--out {out}: the run would replace its geometry {source}")
+        for pattern in OWN_FILES:
+            for path in out.glob(pattern):
+                path.unlink()
+        write_whole(out / "mesh.npz", mesh.save)
+        write_whole(copy, lambda part: part.write_text(text_of(case)))
+        for geometry, source in beside.items():
+            write_whole(out / geometry, lambda part, source=source: shutil.copyfile(source, part))
+    except OSError as error:
+        raise ConfigError(f"--out {out}: cannot be written ({error.strerror})") from None

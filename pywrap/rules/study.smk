@@ -1,0 +1,63 @@
+# The runs of a study, its table and its figure. `lithofrac study` writes study.yaml, cases/ and
+# jobs.json into the results folder and starts these rules there; Ctrl-C, then the same command.
+import sys
+from pathlib import Path
+
+
+configfile: "jobs.json"
+
+
+CASES = config["cases"]
+RUNS = expand("runs/{case}/summary.json", case=CASES)
+# The interpreter that was asked, without the working folder on its path.
+LITHOFRAC = [sys.executable, "-P", "-m", "lithofrac"]
+
+
+wildcard_constraints:
+    case="|".join(CASES),
+
+
+localrules:
+    all,
+
+
+rule all:
+    input:
+        RUNS,
+        "table.parquet",
+        "figure.svg",
+
+
+rule simulate:
+    input:
+        "cases/{case}.yaml",
+    output:
+        "runs/{case}/summary.json",
+    log:
+        "log/{case}.txt",
+    params:
+        core=config["core"],  # another core, other results
+        program=LITHOFRAC,
+    message:
+        "Mesh and run {wildcards.case}"
+    shell:
+        "{params.program:q} run {input:q} --out runs/{wildcards.case}"
+        " --threads {threads} > {log:q} 2>&1"
+
+
+rule collect:
+    input:
+        "study.yaml",
+        RUNS,
+    output:
+        table="table.parquet",
+        figure="figure.svg",
+    log:
+        "log/collect.txt",
+    params:
+        program=LITHOFRAC,
+    message:
+        "Write the table and the figure"
+    shell:
+        "({params.program:q} plot study {input:q} --out {output.table} &&"
+        " {params.program:q} plot study {input:q} --out {output.figure}) > {log} 2>&1"

@@ -1,0 +1,153 @@
+"""Rocks fitted to tests whose rock is known, and to a measured one (analysis/rock_fit.py)."""
+
+import numpy as np
+import pytest
+
+from lithofrac import point
+from lithofrac.analysis.mohr_coulomb import peak_strength
+from lithofrac.analysis.rock_fit import fit_rock, unknowns
+from lithofrac.analysis.rock_start import elastic_constants, first_table, one_row, table_at
+from lithofrac.analysis.zigong_prediction import zigong_prediction, zigong_prediction_error
+from lithofrac.config.material import COLUMNS
+from lithofrac.data.triaxial import Triaxial, load_triaxial
+
+ELASTIC = ("young_modulus_GPa", "poisson_ratio")
+NO_DILATION = np.zeros((2, 1))  # of no use where lateral strains were measured
+LAST = 0.01  # plastic strain at which the generated curves end
+no_core = pytest.mark.no_core
+
+
+def strengths(rock, confinements, noise=0.0, random=None):
+    """Strengths in closed form as tests, with noise [MPa]."""
+    nothing = np.zeros(0)
+    found = []
+    for p in confinements:
+        value = peak_strength(rock.table, 1e6 * p)[0] / 1e6
+        value += random.normal(0.0, noise) if noise else 0.0
+        found.append(Triaxial(f"{p:g} MPa", p, value, nothing, nothing))
+    return found
+
+
+def one_row_of(rock, cohesion=10.0, friction=30.0):
+    """The rock with a table of one row."""
+    values = (0.0, cohesion, friction, 10.0)
+    one = {key: (value,) for key, value in zip(COLUMNS, values, strict=True)}
+    return rock.model_copy(update=one)
+
+
+@pytest.fixture(scope="module")
+def curves():
+    """Triaxial curves of the sandstone of Table 1, up to a plastic strain of `LAST`."""
+    found = []
+    for p in (0.0, 20.0):
+        curve = point.drive("sandstone", confinement_MPa=p, end_strain=0.025, steps=150)
+        curve = curve[curve["plastic_strain"] <= LAST + 1e-9].drop_duplicates("axial_strain")
+        columns = (curve[key].to_numpy() for key in ("axial_strain", "axial_stress_MPa"))
+        top, lateral = curve["axial_stress_MPa"].max(), curve["lateral_strain"].to_numpy()
+        found.append(Triaxial(f"{p:g} MPa", p, top, *columns, lateral))
+    return found
+
+
+def fitted_to(curves, base, start):
+    table = dict(zip(COLUMNS, (tuple(column) for column in vars(start).values()), strict=True))
+    young, poisson = elastic_constants(curves)
+    guess = {"young_modulus_GPa": 1e-3 * young, "poisson_ratio": poisson}
+    rock = base.model_copy(update={**table, **guess})
+    strongest = max(test.strength_MPa for test in curves)
+    return fit_rock(unknowns(rock, start, strongest, ELASTIC, True), curves, [])
+
+
+@no_core
+def test_strengths_of_a_straight_line_give_its_cohesion_and_friction(sandstone):
+    rock = one_row_of(sandstone)
+    tests = strengths(rock, (0.0, 5.0, 20.0, 40.0))
+    fit = fit_rock(unknowns(rock, one_row(tests), 200.0), tests, [])
+    np.testing.assert_allclose(fit.parameters["value"], [10.0, 30.0], rtol=1e-5)
+    assert fit.error_percent("fitted")[1] < 1e-4
+
+
+@no_core
+def test_intervals_hold_the_truth_as_often_as_they_say(sandstone):
+    """300 noisy sets; 95 % is met within three standard errors of a count."""
+    rock, random = one_row_of(sandstone), np.random.default_rng(1)
+    hits = np.zeros(2)
+    for _ in range(300):
+        tests = strengths(rock, (2.0, 10.0, 20.0, 40.0, 60.0), 2.0, random)
+        found = fit_rock(unknowns(rock, one_row(tests), 400.0), tests, []).parameters
+        hits += np.abs(found["value"] - [10.0, 30.0]) <= found["plus_minus"]
+    np.testing.assert_allclose(hits / 300, 0.95, atol=3 * np.sqrt(0.95 * 0.05 / 300))
+
+
+@no_core
+def test_two_strengths_have_no_interval_and_a_value_on_its_bound_says_so(sandstone):
+    rock = one_row_of(sandstone, cohesion=0.0)
+    tests = strengths(rock, (5.0, 20.0))
+    fit = fit_rock(unknowns(rock, one_row(tests), 60.0), tests, [])
+    assert fit.parameters["value"].iloc[0] == pytest.approx(0.0, abs=1e-3)
+    below = [test for test in strengths(rock, (5.0, 20.0, 30.0))]
+    below[0] = Triaxial("low", 5.0, 12.0, np.zeros(0), np.zeros(0))
+    held = fit_rock(unknowns(rock, one_row(below), 90.0), below, []).parameters
+    assert held["note"].iloc[0] == "at its lower bound"
+    assert np.isnan(held["plus_minus"].iloc[0])
+    exact = strengths(one_row_of(sandstone), (5.0, 20.0))
+    two = fit_rock(unknowns(one_row_of(sandstone), one_row(exact), 90.0), exact, [])
+    assert two.parameters["plus_minus"].isna().all()
+
+
+@no_core
+@pytest.mark.validation
+def test_zigong_predicts_every_other_strength_within_five_percent(data_folder):
+    """Issue: fitted on 10, 30, 50, 70 MPa; rms error at 20, 40, 60, 80 MPa below 5 %."""
+    rock = data_folder.parent / "configs" / "materials" / "sandstone.yaml"
+    table = zigong_prediction([rock], data_folder)
+    assert list(table.loc[table["role"] == "predicted", "confinement_MPa"]) == [20, 40, 60, 80]
+    errors = zigong_prediction_error([rock], data_folder).set_index("role")
+    assert errors.loc["predicted", "rms_percent"] < 5.0
+    assert errors.loc["predicted", "rms_percent"] == pytest.approx(3.49, abs=0.01)
+    assert errors.loc["predicted", "largest_percent"] == pytest.approx(5.34, abs=0.01)
+    assert errors.loc["predicted", "largest_at_confinement_MPa"] == 80.0
+
+
+def test_the_bench_has_the_strengths_that_the_fit_says(sandstone, data_folder):
+    """One row has no hardening: the bench yields at the fitted line, not near it."""
+    tests = load_triaxial([data_folder / "zigong" / "triaxial_strength.csv"])
+    rock = one_row_of(sandstone)
+    fit = fit_rock(unknowns(rock, one_row(tests), 443.5), tests, [])
+    for row in fit.strengths.itertuples():
+        curve = point.drive(fit.rock, "triaxial", row.confinement_MPa, 0.03, 60)
+        assert curve["axial_stress_MPa"].max() == pytest.approx(row.computed_MPa, rel=1e-6)
+
+
+def test_table_1_comes_back_at_its_own_rows(curves, sandstone):
+    rows = np.array([e for e in sandstone.plastic_strain if e <= LAST])
+    start = table_at(rows, curves, *elastic_constants(curves), NO_DILATION)
+    fit = fitted_to(curves, sandstone, start)
+    assert fit.rock.young_modulus_GPa == pytest.approx(28.0, rel=1e-3)
+    assert fit.rock.poisson_ratio == pytest.approx(0.25, abs=1e-3)
+    within = {"cohesion_MPa": 0.1, "friction_angle_deg": 0.1, "dilation_angle_deg": 1.0}
+    for key, close in within.items():
+        known = getattr(sandstone, key)[: len(rows)]
+        np.testing.assert_allclose(getattr(fit.rock, key), known, atol=close, err_msg=key)
+    assert fit.error_percent("fitted")[1] < 0.1
+
+
+@pytest.mark.slow
+def test_rows_that_the_fit_chooses_follow_table_1_between_them(curves, sandstone):
+    """Within the sampling: six rows for the eight of the table, seven of them reached."""
+    start = first_table(curves, *elastic_constants(curves), NO_DILATION, 6)
+    assert len(start.plastic_strain) == 6
+    fit = fitted_to(curves, sandstone, start)
+    strain = np.linspace(0.0, LAST, 101)
+    found, known = fit.rock.table, sandstone.table
+    cohesion = np.interp(strain, found[0], found[1]) - np.interp(strain, known[0], known[1])
+    friction = np.interp(strain, found[0], found[2]) - np.interp(strain, known[0], known[2])
+    assert np.sqrt(np.mean(cohesion**2)) < 0.5e6
+    assert np.degrees(np.sqrt(np.mean(friction**2))) < 1.5
+    assert fit.error_percent("fitted")[1] < 1.0
+    stress = fit.points[fit.points["quantity"] == "axial_stress_MPa"]
+    assert np.sqrt(np.mean((stress["computed"] - stress["measured"]) ** 2)) < 2.0  # MPa
+
+
+def test_a_row_beyond_the_curves_is_refused(curves):
+    with pytest.raises(ValueError, match=r"0\.03 lies beyond the plastic strain"):
+        table_at(np.array([0.0, 0.03]), curves, *elastic_constants(curves), NO_DILATION)
