@@ -153,7 +153,18 @@ confinement_MPa,strength_MPa,strength_min_MPa,strength_max_MPa,tests
 20,260.5,212.7,338.9,4
 40,306.0,261.1,350.8,2
 """
+CURVES = """\
+confinement_MPa,axial_strain,axial_stress_MPa,lateral_strain,test
+5,0.0,5.0,0.0,a
+5,0.001,33.0,0.00025,a
+5,0.002,61.0,0.0005,a
+5,0.004,100.0,0.002,a
+5,0.006,80.0,0.004,a
+5,0.008,70.0,0.006,a
+"""
 DATA = {
+    "data/own/strengths.csv": STRENGTH,
+    "data/own/curves.csv": CURVES,
     "data/klerck2004/figure_axes.csv": AXES,
     "data/klerck2004/digitised/a.yaml": SHEET,
     "data/klerck2004/digitised/a.csv": POINTS,
@@ -200,16 +211,28 @@ def own_msh(columns: int = 3, rows: int = 4) -> str:
 
 # Meshed by gmsh in other formats than the one above.
 OWN_GEO = """\
-SetFactory("OpenCASCADE");
-Rectangle(1) = {0, 0, 0, 3, 3};
-Rectangle(2) = {0, 3, 0, 3, 1};
-Coherence;
-Mesh.MeshSizeMax = 1.5;
+Point(1) = {0, 0, 0, 1.5};
+Point(2) = {3, 0, 0, 1.5};
+Point(3) = {3, 3, 0, 1.5};
+Point(4) = {0, 3, 0, 1.5};
+Point(5) = {3, 4, 0, 1.5};
+Point(6) = {0, 4, 0, 1.5};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Line(5) = {3, 5};
+Line(6) = {5, 6};
+Line(7) = {6, 4};
+Curve Loop(1) = {1, 2, 3, 4};
+Curve Loop(2) = {-3, 5, 6, 7};
+Plane Surface(1) = {1};
+Plane Surface(2) = {2};
 Physical Surface("rock") = {1};
 Physical Surface("cap") = {2};
 Physical Curve("bottom") = {1};
-Physical Curve("right") = {2};
-Physical Curve("top") = {7};
+Physical Curve("right") = {2, 5};
+Physical Curve("top") = {6};
 """
 OTHER_MSH = {
     "own_41.msh": ("-format", "msh41"),

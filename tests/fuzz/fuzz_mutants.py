@@ -210,8 +210,10 @@ def _cells(content: bytes, choose: random.Random, gap: bytes = b",") -> bytes:
     for _ in range(choose.choice((1, 1, 2, 4))):
         row = choose.randrange(len(rows))
         cell = choose.randrange(len(rows[row])) if rows[row] else 0
-        change = choose.randrange(5)
-        if change <= 1 and rows[row]:
+        change = choose.randrange(8)
+        if change >= 4 and rows[row]:
+            rows[row][cell] = _other_cell(rows[row][cell], choose)
+        elif change <= 1 and rows[row]:
             rows[row][cell] = choose.choice((*WORDS, *CELLS))
         elif change == 2 and rows[row]:
             del rows[row][cell]
@@ -220,6 +222,17 @@ def _cells(content: bytes, choose: random.Random, gap: bytes = b",") -> bytes:
         else:
             rows.insert(row, list(rows[choose.randrange(len(rows))]))
     return b"\n".join(gap.join(row) for row in rows) + b"\n"
+
+
+def _other_cell(cell: bytes, choose: random.Random) -> bytes:
+    """Another number in the place of one; else the same."""
+    try:
+        value = float(cell)
+    except ValueError:
+        return cell
+    if cell.strip().isdigit() and choose.random() < 0.7:
+        return str(max(0, int(cell) + choose.choice((-2, -1, 1, 2)))).encode()
+    return repr(value * choose.choice(FACTORS)).encode()
 
 
 # ---------------------------------------------------------------- mappings

@@ -29,8 +29,10 @@ from fuzz_mutants import Mutant, mutant
 from lithofrac import cli
 from lithofrac.config import load_case
 from lithofrac.config.element_count import element_count, platen_count
+from lithofrac.config.errors import printable
 from lithofrac.data import load_curves, measured_strength
 from lithofrac.data.axes import load_axes
+from lithofrac.data.triaxial import load_triaxial
 from lithofrac.scenes import _gmsh, make_mesh
 
 GOOD = ("result", "large", "refused", "stopped")
@@ -160,13 +162,15 @@ def _read_data() -> int:
         load_axes(Path("data/klerck2004/figure_axes.csv"))
         table = measured_strength(Path("data"), "tautona")
         curves = load_curves(Path("data"), "9")
+        own = load_triaxial([Path("data/own/strengths.csv"), Path("data/own/curves.csv")])
     except Exception as error:
         if cli._exit_code(error) != cli.BAD_INPUT:
             raise
         for line in str(error).split("\n"):
-            print(f"lithofrac: {line}", file=sys.stderr)
+            print(f"lithofrac: {printable(line)}", file=sys.stderr)
         return cli.BAD_INPUT
     numbers = [table.to_numpy(dtype=float), *(np.concatenate([c.x, c.y]) for c in curves)]
+    numbers += [np.append(test.axial_stress_MPa, test.strength_MPa) for test in own]
     if not all(np.isfinite(part).all() for part in numbers):
         raise Failure("nan", "a number of a data file is not finite")
     return 0
