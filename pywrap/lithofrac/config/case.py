@@ -50,7 +50,9 @@ class Probe(Section):
     """A point; the element whose centroid is nearest to it is recorded."""
 
     x_mm: Coordinate
+    """Place of the point across; in axisymmetry its radius."""
     y_mm: Coordinate
+    """Height of the point."""
 
     @property
     def point(self) -> tuple[float, float]:
@@ -62,9 +64,14 @@ class Case(Section):
     """One run of the suite, as its file describes it."""
 
     title: str
+    """What the run is, in a few words."""
     material: Material
+    """Of the rock: name of a file in `configs/materials`, path of one, its keys themselves, or
+    `extends:` with a name and the keys that differ."""
     scene: Scene
+    """Geometry, one kind of several."""
     loading: Loading
+    """How it is loaded."""
     damping: DampingSection = DampingSection()
     mesh: MeshSection = MeshSection()
     platens: PlatensSection | None = None

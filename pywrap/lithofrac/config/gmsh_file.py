@@ -67,7 +67,9 @@ class Way(Section):
     """How far a boundary is moved; a component that is left out stays free."""
 
     x_mm: Coordinate | None = None
+    """Way along x."""
     y_mm: Coordinate | None = None
+    """Way along y."""
 
     @model_validator(mode="after")
     def _anything(self):

@@ -55,9 +55,13 @@ class Material(Section):
     compression: bool = True
     """Mohr-Coulomb planes in force; `false` leaves tension alone and needs no table."""
     young_modulus_GPa: Modulus
+    """Young's modulus, one for tension and compression."""
     poisson_ratio: float = Field(ge=0.0, lt=0.5)
+    """Poisson's ratio."""
     density_kg_m3: Density
+    """Mass density."""
     tensile_strength_MPa: Strength | None = Field(default=None, validate_default=True)
+    """Direct tensile strength; needed unless `elastic`."""
     fracture_energy_J_m2: FractureEnergy | None = Field(default=None, validate_default=True)
     """Energy Gf that opening a unit of crack area uses up."""
     plastic_strain: tuple[PlasticStrain, ...] | None = Field(
@@ -67,8 +71,11 @@ class Material(Section):
     cohesion_MPa: tuple[Pressure, ...] | None = Field(
         default=None, validate_default=True, strict=False
     )
+    """Mobilised cohesion in each row."""
     friction_angle_deg: Angles | None = Field(default=None, validate_default=True, strict=False)
+    """Mobilised friction angle in each row."""
     dilation_angle_deg: Angles | None = Field(default=None, validate_default=True, strict=False)
+    """Angle of the flow potential (eq. 8) in each row: how much the rock swells as it yields."""
     hardening: Literal["compressive", "total"] = "compressive"
     """Which inelastic strain feeds eq. 7: Mohr-Coulomb flow only, or all of it."""
     coupling: Literal["implicit", "explicit"] = "implicit"

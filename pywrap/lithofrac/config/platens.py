@@ -10,7 +10,9 @@ class PlatensSection(Section):
     """All platens of a scene. They touch the rock without a gap and share no node with it."""
 
     material: Material
+    """As `material` of the case."""
     thickness_mm: Length
+    """Thickness of every platen."""
     element_size_over_rock: float = Field(default=2.0, ge=0.1, le=1e3)
     """Edge length of the elements over that of the rock; above 1 the rock sets the time step."""
     overhang_mm: Coordinate = 0.0

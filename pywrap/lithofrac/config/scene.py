@@ -40,6 +40,7 @@ class Specimen(Section):
     """What all uniformly meshed, upright specimens share."""
 
     height_mm: Length
+    """Height of the whole specimen."""
     element_size_mm: Length
     """Nominal edge length of the elements."""
     structured: bool = False
@@ -61,6 +62,7 @@ class Triaxial(Specimen):
 
     kind: Literal["triaxial"]
     diameter_mm: Length
+    """Of the cylinder."""
     whole_height: bool = False
     """Mesh the whole height; `false` meshes the upper half, as the paper does."""
 
@@ -79,6 +81,7 @@ class PlaneStrain(Specimen):
 
     kind: Literal["plane_strain"]
     width_mm: Length
+    """Width across the confined faces."""
     lateral_platens: bool = False
     """Platens on the lateral faces as well: pressure and spring act on their backs."""
 
@@ -92,6 +95,7 @@ class HoleInBlock(Section):
     """What all square blocks with a central hole share."""
 
     hole_radius_mm: Length
+    """Radius of the hole."""
     block_over_radius: float = Field(default=8.0, gt=2.0, le=1e4)
     """Width and height of the whole block, in hole radii."""
     wall_elements_per_radius: float = Field(default=12.0, ge=1.0, le=1e4)
@@ -145,6 +149,7 @@ class Bar(Specimen):
 
     kind: Literal["bar"]
     width_mm: Length
+    """Width of the bar."""
     structured: bool = True
     """Rows of equal right-angled triangles instead of an unstructured mesh."""
     laterally_fixed: bool = False
@@ -165,13 +170,17 @@ class Punch(Section):
 
     kind: Literal["punch"]
     width_mm: Length
+    """Width of the block."""
     block_height_mm: Length
     """Height of the block below the strip."""
     strip_width_mm: Length
+    """Width of the strip, on which the punch acts."""
     strip_height_mm: Length
+    """Height by which the strip stands out of the block."""
     strip_element_size_mm: Length
     """Nominal edge length in the strip and within `fine_radius_mm` of its foot."""
     fine_radius_mm: Length
+    """Distance from the foot of the strip up to which elements are as small as in the strip."""
     element_size_mm: Length
     """Nominal edge length at a distance of one block height from the strip, and beyond."""
 
@@ -235,6 +244,7 @@ class Brazilian(Section):
 
     kind: Literal["brazilian"]
     diameter_mm: Length
+    """Of the disc."""
     flat_angle_deg: float = Field(ge=1.0, le=40.0)
     """Angle at the centre that each loaded flat spans."""
     element_size_mm: Length

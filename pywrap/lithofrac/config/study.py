@@ -30,12 +30,14 @@ class PlotSection(Section):
     series: str | None = None
     """Overridden key that tells lines apart."""
     x_scale: Literal["linear", "log"] = "linear"
+    """Of the horizontal axis."""
 
 
 class Study(Section):
     """Runs that differ in a few keys of one case; `grid` or `cases` says in which."""
 
     title: str
+    """What the study is, in a few words."""
     base: str
     """Case file that all runs extend, relative to the study file."""
     set: dict[str, Any] = Field(default_factory=dict)

@@ -37,6 +37,7 @@ class Suite(Section):
     """Cases that are run together."""
 
     title: str
+    """What the suite is, in a few words."""
     cases: dict[Name, Entry] = Field(min_length=1)
     """Name of a case, which is also the name of its results folder -> what it is."""
     _file: Path = PrivateAttr(default=Path())

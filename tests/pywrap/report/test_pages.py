@@ -12,6 +12,7 @@ pytestmark = pytest.mark.no_core
 ROOT = Path(__file__).parents[3]
 SHEETS = sorted((ROOT / "reports" / "sheets").glob("*.md"))
 PAGES = [ROOT / "README.md", *SHEETS]
+GUIDE = [ROOT / "CONTRIBUTING.md", *sorted((ROOT / "reports" / "guide").glob("*.md"))]
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 FILL = "fill it: snakemake --cores all pages"
 
@@ -30,7 +31,7 @@ def anchors(page):
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", [*PAGES, *GUIDE], ids=lambda page: page.stem)
 def test_links_and_pictures_of_a_page_are_there(page):
     for target, path, anchor in links(page):
         assert path.exists(), f"{page.name}: {target}"

@@ -1,0 +1,321 @@
+"""Every command and every file of the documentation, run as its reader would.
+
+A page is one session: its fenced blocks are taken in order, in a temporary folder that has the
+configs and the data of the checkout. Words behind the language of a block say more:
+
+exists : commands are not run; program, command and options must exist
+slow : so in the quick run (Python is compiled); run with the tests marked slow
+add="..." : words that each `lithofrac run` and `study` of the block gets, to be short
+file=NAME : the block is saved there
+
+Commands of lithofrac run in this process, through `main`: starting forty would take a minute.
+Blocks are read by markdown-it, which the report needs anyway; no kept library runs shell, YAML
+and Python of one page in one session.
+"""
+
+import contextlib
+import doctest
+import io
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from markdown_it import MarkdownIt
+
+from lithofrac.arguments import parser
+from lithofrac.cli import COMMANDS, main
+from lithofrac.config.yaml_file import read_yaml
+
+pytestmark = pytest.mark.no_core  # it runs cases, but what is tested is not the build of the core
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
+PAGES += sorted((ROOT / "reports" / "guide").glob("*.md"))
+RULES = [ROOT / "Snakefile", *(ROOT / "pywrap" / "rules").glob("*.smk")]
+FLAGS, OPTIONS = {"exists", "slow"}, {"add", "file"}
+ASSIGNMENT = re.compile(r"[A-Z_]+=.*\Z")
+TARGET = re.compile(r"[a-z_]+\Z")
+
+
+@dataclass(frozen=True)
+class Block:
+    """One fenced block of a page."""
+
+    page: Path
+    line: int
+    language: str
+    text: str
+    flags: frozenset = frozenset()
+    options: dict = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        return f"{self.page.relative_to(ROOT)}:{self.line}"
+
+
+def blocks(page):
+    """Fenced blocks of a page in order."""
+    for token in MarkdownIt().parse(page.read_text(encoding="utf-8")):
+        if token.type != "fence":
+            continue
+        language, *words = shlex.split(token.info) or [""]
+        pairs = dict(word.split("=", 1) for word in words if "=" in word)
+        flags = frozenset(word for word in words if "=" not in word)
+        yield Block(page, token.map[0] + 1, language, token.content, flags, pairs)
+
+
+def spans(page):
+    """Inline code of a page: (line, text)."""
+    for token in MarkdownIt().enable("table").parse(page.read_text(encoding="utf-8")):
+        for child in token.children or ():
+            if child.type == "code_inline":
+                yield token.map[0] + 1, child.content
+
+
+def commands(text):
+    """Words of each command of a shell block."""
+    for line in text.replace("\\\n", " ").splitlines():
+        for part in line.split("&&"):
+            words = shlex.split(part, comments=True)
+            while words and ASSIGNMENT.match(words[0]):
+                words = words[1:]
+            if words:
+                yield words
+
+
+def subparser(command):
+    """Parser of one command of lithofrac."""
+    return next(a for a in parser()._actions if a.choices and command in a.choices).choices[command]
+
+
+def check_lithofrac(words, whole=True):
+    """A command with its options, and where it is whole with all it needs."""
+    if words[:1] == ["--version"]:
+        return
+    assert words[0] in COMMANDS, f"lithofrac has no command {words[0]}"
+    if whole:
+        parser().parse_args(words)
+        return
+    known = subparser(words[0])._option_string_actions
+    for word in words[1:]:
+        assert not word.startswith("--") or word in known, f"lithofrac {words[0]} has no {word}"
+
+
+def check_tasks(words, whole=True):
+    """A task of tasks.py and its options."""
+    text = (ROOT / "tasks.py").read_text()
+    assert f"python3 tasks.py {words[0]} " in text, f"tasks.py has no task {words[0]}"
+    for word in words[1:]:
+        passed_on = words[0] == "reproduce" and word == "--dry-run"  # to Snakemake
+        assert not word.startswith("-") or word in text or passed_on, f"tasks.py has no {word}"
+
+
+def check_snakemake(words, whole=True):
+    """Targets that are rules."""
+    rules = "".join(path.read_text() for path in RULES)
+    value_of = ""
+    for word in words:
+        if TARGET.match(word) and value_of not in ("--cores", "--config"):
+            assert f"rule {word}:" in rules, f"there is no rule {word}"
+        value_of = word
+
+
+def check_python(words, whole=True):
+    """`python3 tasks.py TASK`."""
+    assert words[:1] == ["tasks.py"], f"python3 {' '.join(words)}: expected a task of tasks.py"
+    check_tasks(words[1:], whole)
+
+
+def nothing_to_check(words, whole=True):
+    """Programs that are not ours."""
+
+
+CHECKS = {
+    "lithofrac": check_lithofrac,
+    "python3": check_python,
+    "snakemake": check_snakemake,
+    "pip": nothing_to_check,
+    "pytest": nothing_to_check,
+    ".": nothing_to_check,
+}
+
+
+class Session:
+    """A reader at work on one page."""
+
+    def __init__(self, folder, monkeypatch, slow):
+        self.folder, self.monkeypatch, self.slow = folder, monkeypatch, slow
+        self.names: dict = {"__name__": "page"}
+
+    def take(self, block):
+        """Do what a block says."""
+        unknown = (block.flags - FLAGS) | (block.options.keys() - OPTIONS)
+        assert not unknown, f"{block}: unknown words {sorted(unknown)}"
+        language = block.language
+        if language == "math":  # tests/docs/test_theory.py
+            return
+        if "file" in block.options:
+            self.save(block)
+        elif language == "sh":
+            for words in commands(block.text):
+                self.run(block, words)
+        elif language == "console":
+            self.compare(block)
+        elif language == "python":
+            code = compile(block.text, str(block), "exec")
+            if self.slow or "slow" not in block.flags:
+                exec(code, self.names)
+        else:
+            pytest.fail(f"{block}: a block in {language or 'no language'} that nothing runs")
+
+    def save(self, block):
+        """A block that is a file."""
+        path = Path(block.options["file"])
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(block.text, encoding="utf-8")
+        if path.suffix == ".yaml":
+            read_yaml(path)
+
+    def run(self, block, words):
+        """One command; returns what it printed."""
+        program, *rest = words
+        if "exists" in block.flags or ("slow" in block.flags and not self.slow):
+            assert program in CHECKS, f"{block}: {program}: nobody knows how to check it"
+            CHECKS[program](rest)
+            return ""
+        if program == "cd":
+            self.monkeypatch.chdir(*rest)
+            return ""
+        if program == "sh":
+            done = subprocess.run(words, capture_output=True, text=True, timeout=600)
+            assert done.returncode == 0, f"{block}: {shlex.join(words)}: {done.stderr}"
+            return done.stdout
+        assert program == "lithofrac", f"{block}: {program}: expected lithofrac, or `exists`"
+        if rest[0] in ("run", "study"):
+            rest += shlex.split(block.options.get("add", ""))
+        rest = [file for word in rest for file in expanded(word)]
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            try:
+                code = main(rest)
+            except SystemExit as ended:  # --version
+                code = ended.code
+        assert not code, f"{block}: lithofrac {shlex.join(rest)}: exit {code}: {err.getvalue()}"
+        return out.getvalue()
+
+    def compare(self, block):
+        """Commands behind `$`, each with its output; `...` stands for anything."""
+        for part in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
+            command, _, wanted = part.partition("\n")
+            (words,) = commands(command)
+            got = self.run(block, words)
+            same = doctest.OutputChecker().check_output(wanted, got, doctest.ELLIPSIS)
+            assert same, f"{block}: {command} printed\n{got}\nexpected\n{wanted}"
+
+
+def expanded(word):
+    """Files of a pattern, or the word."""
+    return sorted(str(path) for path in Path().glob(word)) if "*" in word else [word]
+
+
+@pytest.fixture
+def reader(tmp_path, monkeypatch):
+    """reader(slow) -> a session in a folder like the checkout."""
+    for name in ("configs", "data"):
+        shutil.copytree(ROOT / name, tmp_path / name)
+    programs = tmp_path / ".bin"
+    programs.mkdir()
+    program = programs / "lithofrac"
+    program.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -m lithofrac "$@"\n')
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{programs}{os.pathsep}{os.environ['PATH']}")
+    monkeypatch.chdir(tmp_path)
+    return lambda slow: Session(tmp_path, monkeypatch, slow)
+
+
+def name_of(page):
+    return page.relative_to(ROOT).as_posix()
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if any(blocks(page))], ids=name_of)
+def test_a_page_does_what_it_says(page, reader):
+    session = reader(slow=False)
+    for block in blocks(page):
+        session.take(block)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "page",
+    [page for page in PAGES if any("slow" in one.flags for one in blocks(page))],
+    ids=name_of,
+)
+def test_the_long_commands_of_a_page_run(page, reader):
+    session = reader(slow=True)
+    for block in blocks(page):
+        session.take(block)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_commands_within_sentences_exist(page):
+    for line, text in spans(page):
+        for words in commands(text) if text.split(" ")[0] in CHECKS else ():
+            try:
+                if len(words) > 1 and words[0] in CHECKS:
+                    CHECKS[words[0]](words[1:], whole=False)
+            except AssertionError as error:
+                pytest.fail(f"{page.name}:{line}: `{text}`: {error}")
+
+
+PLACES = ("fortran/", "pywrap/", "configs/", "data/", "reports/", "tests/")
+PLACEHOLDER = re.compile(r"[A-Z]{4,}|\{[a-z.]+\}")  # KIND, NAME; {suffix} of a file name
+
+
+def alternatives(text):
+    """`a/{b,c}.py` -> a/b.py, a/c.py."""
+    found = re.search(r"\{([^{}]*)\}", text)
+    if not found:
+        return [text]
+    parts = found[1].split(",")
+    return [w for p in parts for w in alternatives(text[: found.start()] + p + text[found.end() :])]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_places_that_are_named_are_there(page):
+    """Files and folders of the checkout in inline code; with them the map of the house."""
+    for line, text in spans(page):
+        if not text.startswith(PLACES) or " " in text or PLACEHOLDER.search(text.split("/")[-1]):
+            continue
+        if PLACEHOLDER.search(text):
+            continue
+        for place in alternatives(text):
+            assert list(ROOT.glob(place.rstrip("/"))), f"{page.name}:{line}: {place}"
+
+
+def test_every_folder_of_the_code_is_on_the_map():
+    text = (ROOT / "CONTRIBUTING.md").read_text()
+    folders = [*(ROOT / "fortran").glob("*/"), *(ROOT / "pywrap" / "lithofrac").glob("*/")]
+    for folder in folders:
+        if folder.is_dir() and folder.name != "__pycache__":
+            assert f"`{folder.relative_to(ROOT).as_posix()}/" in text, folder.name
+
+
+def test_the_reader_refuses_what_nothing_runs(reader):
+    session = reader(slow=False)
+    page = PAGES[0]
+    for block in (
+        Block(page, 1, "yaml", "a: 1"),
+        Block(page, 1, "sh", "rm -r out"),
+        Block(page, 1, "sh", "lithofrac frobnicate", frozenset({"exists"})),
+        Block(page, 1, "sh", "python3 tasks.py frobnicate", frozenset({"exists"})),
+        Block(page, 1, "sh", "snakemake frobnicate", frozenset({"exists"})),
+        Block(page, 1, "sh", "lithofrac plot x --out x.svg", frozenset({"exits"})),
+        Block(page, 1, "console", "$ lithofrac --version\nno such line\n"),
+    ):
+        with pytest.raises((AssertionError, pytest.fail.Exception)):
+            session.take(block)
