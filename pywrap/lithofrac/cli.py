@@ -10,6 +10,7 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,6 +35,8 @@ GOOD, BAD_INPUT, NUMERICAL_FAILURE, MOVED, INTERRUPTED = 0, 2, 3, 4, 130
 
 def main(arguments: list[str] | None = None) -> int:
     """Run one command; returns its exit code."""
+    with suppress(AttributeError):  # a title may hold letters that the locale lacks
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         try:
             return _one_command(arguments)
@@ -46,7 +49,6 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _one_command(arguments: list[str] | None) -> int:
     options = parser().parse_args(arguments)
-    _print_anything()
     try:
         return COMMANDS[options.command](options)
     except KeyboardInterrupt:
@@ -301,13 +303,6 @@ COMMANDS = {
     "compare": compare,
     "references": references,
 }
-
-
-def _print_anything() -> None:
-    """A name that the terminal cannot show is shown by its codes; it stops nothing."""
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="backslashreplace")
 
 
 def _present(paths: list[Path]) -> list[Path]:

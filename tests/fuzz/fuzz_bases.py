@@ -128,6 +128,19 @@ cases:
     twin: first
 """
 
+STUDY = """\
+title: A study
+base: case
+set: {output.fields: 0}
+grid:
+  loading.confinement_MPa: [0, 5, 10]
+  scene.size_mm: [0.5, 1.0]
+name: run_{loading.confinement_MPa}_{scene.size_mm:04.1f}
+realisations: 2
+quantities: [peak_stress_MPa]
+plot: {x: loading.confinement_MPa, y: [peak_stress_MPa], series: scene.size_mm, x_scale: linear}
+"""
+
 AXES = """\
 figure,axis,quantity,unit,printed_min,printed_max,note,source
 9,x,axial_strain,1,,,range is in the image only,"Fig. 9, section 3.2"

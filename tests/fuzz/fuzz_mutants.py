@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import yaml
-from fuzz_bases import CASES, DATA, MATERIALS, MESHED, OTHER_MSH, OWN, SUITE
+from fuzz_bases import CASES, DATA, MATERIALS, MESHED, OTHER_MSH, OWN, STUDY, SUITE
 
 WORDS = (
     b"nan", b".nan", b".inf", b"-.inf", b"1e400", b"-1e400", b"1e-400", b"9" * 400, b"-0", b"0x10",
@@ -106,7 +106,7 @@ def mutant(seed: int, meshes: dict[str, bytes]) -> Mutant:
     """The mutant of a seed; `meshes` holds the right mesh of every case, as an .npz."""
     choose = random.Random(seed)
     makers = (_case, _material, _suite, _mesh, _own, _data)
-    make = choose.choices(makers, weights=(35, 17, 4, 22, 13, 9))[0]
+    make = choose.choices(makers, weights=(34, 16, 6, 22, 13, 9))[0]
     return make(seed, choose, meshes)
 
 
@@ -133,6 +133,10 @@ def _material(seed: int, choose: random.Random, meshes: dict[str, bytes]) -> Mut
 
 
 def _suite(seed: int, choose: random.Random, meshes: dict[str, bytes]) -> Mutant:
+    if choose.random() < 0.5:
+        text, how = _text(STUDY.encode(), choose)
+        files = {"case.yaml": CASES["single_element"].encode(), "study.yaml": text}
+        return Mutant(seed, f"study, {how}", _folder() | files, ("study",))
     text, how = _text(SUITE.encode(), choose)
     cases = {f"{name}.yaml": CASES[name].encode() for name in ("single_element", "triaxial")}
     words = ("check", choose.choice(["first", "second", "first@seed2"]), "--suite", "suite.yaml")

@@ -30,6 +30,7 @@ from lithofrac import cli
 from lithofrac.config import load_case
 from lithofrac.config.element_count import element_count, platen_count
 from lithofrac.config.errors import printable
+from lithofrac.config.study import load_study
 from lithofrac.data import load_curves, measured_strength
 from lithofrac.data.axes import load_axes
 from lithofrac.data.triaxial import load_triaxial
@@ -119,8 +120,8 @@ def verdict(found: Mutant) -> dict:
 def _tried(found: Mutant, top: Path) -> tuple[str, str]:
     """Kind of verdict and what was said."""
     before = _tree(top)
-    if found.words == ("data",):
-        code, said = _call(_read_data)
+    if found.words in (("data",), ("study",)):
+        code, said = _call(_read_study if found.words == ("study",) else _read_data)
         _judge_words(code, said)
         return ("result" if code == 0 else "refused"), said
     words = list(found.words)
@@ -147,13 +148,35 @@ def _call(function) -> tuple[int, str]:
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors):
         try:
             code = function()
-        except TooLarge:
+        except (TooLarge, Failure):
             raise
         except SystemExit as left:
             code = left.code
         except Exception:
             raise Failure("traceback", traceback.format_exc()) from None
     return code, errors.getvalue()
+
+
+def _read_study() -> int:
+    """What reads studies, as a command would; its cases are those of other mutants."""
+    try:
+        study = load_study("study.yaml")
+        for name in study.names[:10]:
+            if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.@-]*", name):
+                raise Failure("written", f"the folder of a run: {name!r}")
+            study.case(name)
+    except Exception as error:
+        return _refused(error)
+    return 0
+
+
+def _refused(error: Exception) -> int:
+    """Say what a command would say of an error, unless it is a defect."""
+    if cli._exit_code(error) != cli.BAD_INPUT:
+        raise error
+    for line in str(error).split("\n"):
+        print(f"lithofrac: {printable(line)}", file=sys.stderr)
+    return cli.BAD_INPUT
 
 
 def _read_data() -> int:
@@ -164,11 +187,7 @@ def _read_data() -> int:
         curves = load_curves(Path("data"), "9")
         own = load_triaxial([Path("data/own/strengths.csv"), Path("data/own/curves.csv")])
     except Exception as error:
-        if cli._exit_code(error) != cli.BAD_INPUT:
-            raise
-        for line in str(error).split("\n"):
-            print(f"lithofrac: {printable(line)}", file=sys.stderr)
-        return cli.BAD_INPUT
+        return _refused(error)
     numbers = [table.to_numpy(dtype=float), *(np.concatenate([c.x, c.y]) for c in curves)]
     numbers += [np.append(test.axial_stress_MPa, test.strength_MPa) for test in own]
     if not all(np.isfinite(part).all() for part in numbers):
@@ -197,7 +216,7 @@ def _judge_files(code: int, before: dict, top: Path) -> None:
         raise Failure("written", f"outside of the results: {sorted(set(after) ^ set(before))}")
     if code == 2 and results:
         raise Failure("written", f"refused, and yet {sorted(results)}")
-    half = [name for name in results if Path(name).name.startswith(".")]
+    half = [name for name in results if ".part" in Path(name).name]
     if half:
         raise Failure("written", f"half-written {half}")
     if code == 0:
