@@ -144,12 +144,14 @@ def _suite(seed: int, choose: random.Random, meshes: dict[str, bytes]) -> Mutant
 
 
 def _mesh(seed: int, choose: random.Random, meshes: dict[str, bytes]) -> Mutant:
-    name = choose.choice(list(CASES))
+    name = choose.choice([*CASES, "own"])
     if choose.random() < 0.15:
         mesh, how = _bytes(meshes[name], choose), "bytes"
     else:
         mesh, how = _arrays(meshes[name], choose)
-    files = _folder() | {"case.yaml": CASES[name].encode(), "mesh.npz": mesh}
+    files = _folder() | {"case.yaml": CASES.get(name, OWN).encode(), "mesh.npz": mesh}
+    if name == "own":
+        files["own.msh"] = meshes["own_22.msh"]
     words = ("run", "case.yaml", "--mesh", "mesh.npz")
     return Mutant(seed, f"mesh of {name}, {how}", files, words)
 

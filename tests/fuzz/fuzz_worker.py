@@ -23,7 +23,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pandas as pd
-from fuzz_bases import CASES, MATERIALS, OTHER_MSH, OWN_GEO, own_msh
+from fuzz_bases import CASES, MATERIALS, OTHER_MSH, OWN, OWN_GEO, own_msh
 from fuzz_mutants import Mutant, mutant
 
 from lithofrac import cli
@@ -88,7 +88,8 @@ def write_meshes(folder: str) -> None:
     with tempfile.TemporaryDirectory() as name:
         for file, text in MATERIALS.items():
             (Path(name) / file).write_text(text)
-        for case, text in CASES.items():
+        (Path(name) / "own.msh").write_text(own_msh())
+        for case, text in {**CASES, "own": OWN}.items():
             (Path(name) / "case.yaml").write_text(text)
             make_mesh(load_case(Path(name) / "case.yaml")).save(Path(folder, f"{case}.npz"))
 

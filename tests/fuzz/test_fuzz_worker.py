@@ -42,7 +42,7 @@ def test_a_right_case_ends_in_a_result_of_few_steps(verdict):
 
 
 def test_a_seed_always_gives_the_same_mutant():
-    meshes = {name: bytes(range(200)) for name in (*CASES, "own_22.msh", *OTHER_MSH)}
+    meshes = {name: bytes(range(200)) for name in (*CASES, "own", "own_22.msh", *OTHER_MSH)}
     texts = [seed for seed in range(60) if not _reads_a_mesh(seed, meshes)]
     assert len(texts) > 30
     assert [mutant(seed, meshes) for seed in texts] == [mutant(seed, meshes) for seed in texts]
