@@ -106,7 +106,10 @@ def _lost(seed: int, kind: str, detail: str) -> dict:
 
 def _environment() -> dict:
     paths = [str(HERE), *filter(None, [os.environ.get("PYTHONPATH")])]
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "OMP_NUM_THREADS": "1"}
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "OMP_NUM_THREADS": "1"}
+    if "ASAN_OPTIONS" in env:  # numpy may ask for more than there is, which it then says
+        env["ASAN_OPTIONS"] += ":allocator_may_return_null=1"
+    return env
 
 
 def _keep(seed: int) -> None:
