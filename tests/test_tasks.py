@@ -181,6 +181,38 @@ def test_dry_run_writes_no_report(tasks, calls, monkeypatch):
     assert len(calls) == 1
 
 
+@pytest.fixture
+def locks(tasks, monkeypatch):
+    """Folder of the lock of snakemake, as one that was killed leaves it."""
+    folder = tasks.ROOT / ".snakemake" / "locks"
+    folder.mkdir(parents=True)
+    (folder / "0.output.lock").write_text("out/report.md")
+    return folder
+
+
+@pytest.mark.no_core
+@pytest.mark.skipif(not Path("/proc/self/cwd").exists(), reason="no /proc here")
+def test_lock_of_a_killed_pipeline_is_taken_away(tasks, locks):
+    tasks.forget_killed_pipeline()
+    assert not locks.exists()
+    tasks.forget_killed_pipeline()
+
+
+@pytest.mark.no_core
+@pytest.mark.skipif(not Path("/proc/self/cwd").exists(), reason="no /proc here")
+def test_lock_of_a_pipeline_that_is_alive_stays(tasks, locks):
+    wait = "import sys; print(1, flush=True); sys.stdin.read()"
+    words = [sys.executable, "-c", wait, "snakemake"]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(words, cwd=tasks.ROOT, stdin=pipe, stdout=pipe) as alive:
+        alive.stdout.readline()
+        tasks.forget_killed_pipeline()
+        assert locks.exists()
+        alive.communicate()
+    tasks.forget_killed_pipeline()
+    assert not locks.exists()
+
+
 @pytest.mark.no_core
 def test_portable_build_stands_beside_the_installed_one(tasks, calls):
     tasks.VENV.mkdir()

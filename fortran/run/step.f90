@@ -4,15 +4,13 @@
 !> velocity of the half step after it. The next call starts by moving the nodes.
 module lithofrac_run_step
    use lithofrac_base_kinds, only: wp
-   use lithofrac_base_status, only: bad_element, bad_input, no_return_map, not_finite, ok, &
-      set_failure, status_type
+   use lithofrac_base_status, only: bad_input, no_return_map, ok, set_failure, status_type
    use lithofrac_contact_overlap, only: refuse_overlap
    use lithofrac_fracture_bonds, only: apply_bonds, bond_power, forget_bonds
    use lithofrac_fracture_fragment_drag, only: apply_drag, drag_power
    use lithofrac_mechanics_blocks, only: assemble
    use lithofrac_mechanics_internal_force, only: chunk_force, failure_type
    use lithofrac_mechanics_loads, only: apply_pressure, apply_velocity, work_after, work_before
-   use lithofrac_mesh_mesh, only: triangle_area
    use lithofrac_run_contact_step, only: bring_masses, book_contact, close_contacts, &
       note_velocities
    use lithofrac_run_damping, only: fit_affine, rayleigh_frequency
@@ -22,6 +20,7 @@ module lithofrac_run_step
       update_plain
    use lithofrac_run_observe, only: internal_energy, kinetic_energy
    use lithofrac_run_settings, only: no_damping, relative_to_affine
+   use lithofrac_run_watch, only: check_state
    implicit none
    private
 
@@ -70,7 +69,7 @@ contains
       end if
       model%started = .true.
       model%ledger%initial = kinetic_energy(model) + sum(internal_energy(model))
-      call check_finite(model, status)
+      call check_state(model, status)
    end subroutine start
 
    !> Take `n_steps` steps.
@@ -138,8 +137,7 @@ contains
       !$omp end parallel
       call report_failure(model, failures, status)
       if (status%code == ok) status = contact_status
-      if (status%code == ok) call check_finite(model, status)
-      if (status%code == ok) call check_areas(model, status)
+      if (status%code == ok) call check_state(model, status)
    end subroutine advance
 
    !> Element forces of one block of chunks.
@@ -357,59 +355,17 @@ contains
       type(status_type), intent(out) :: status
 
       integer :: block
-      character(len=200) :: words
+      character(len=240) :: words
 
       do block = 1, size(failures)
          if (failures(block)%code == ok) cycle
          write (words, "(a, i0, a, es12.4e3, a, i0, a, 4es12.3e3, a)") "step ", model%step, &
             ", time ", model%step*model%dt, " s, element ", failures(block)%element, &
             ": no consistent return of the trial stress", failures(block)%trial*1.0e-6_wp, &
-            " MPa (xx, yy, zz, xy)"
+            " MPa (xx, yy, zz, xy); try a smaller time_step_factor or loading speed"
          call set_failure(status, no_return_map, trim(words))
          return
       end do
    end subroutine report_failure
-
-   !> No element may turn inside out: its answer would be smooth and wrong.
-   subroutine check_areas(model, status)
-      type(model_type), intent(in) :: model
-      type(status_type), intent(out) :: status
-
-      character(len=200) :: words
-      real(wp) :: x(2, 3)
-      integer :: element
-
-      do element = 1, model%mesh%n_elements
-         if (model%fracture%on) then
-            if (.not. model%fracture%topology%alive(element)) cycle
-         end if
-         associate (corner => model%mesh%triangles(:, element))
-            x = model%mesh%nodes(:, corner) + model%fields%u(:, corner)
-         end associate
-         if (triangle_area(x(:, 1), x(:, 2), x(:, 3)) > 0.0_wp) cycle
-         write (words, "(a, i0, a, es12.4e3, a, i0, a)") "step ", model%step, ", time ", &
-            model%step*model%dt, " s, element ", element, &
-            ": it has turned inside out; try a finer mesh, a slower load or a smaller end strain"
-         call set_failure(status, bad_element, trim(words))
-         return
-      end do
-   end subroutine check_areas
-
-   subroutine check_finite(model, status)
-      type(model_type), intent(in) :: model
-      type(status_type), intent(out) :: status
-
-      character(len=160) :: words
-      integer :: node
-
-      if (abs(sum(model%sums(1, :))) <= huge(1.0_wp)) return
-      do node = 1, model%mesh%n_nodes
-         if (.not. all(abs(model%fields%v(:, node)) <= huge(1.0_wp))) exit
-      end do
-      write (words, "(a, i0, a, es12.4e3, a, i0, a)") "step ", model%step, ", time ", &
-         model%step*model%dt, " s, node ", min(node, model%mesh%n_nodes), &
-         ": velocity is not finite; try a smaller time_step_factor or loading speed"
-      call set_failure(status, not_finite, trim(words))
-   end subroutine check_finite
 
 end module lithofrac_run_step

@@ -108,7 +108,12 @@ def _run(commands) -> None:
     one.add_argument(
         "--threads", type=_threads, default=1, metavar="N", help="results are the same bits"
     )
-    one.add_argument("--resume", action="store_true", help="go on from the checkpoint in DIR")
+    start = one.add_mutually_exclusive_group()
+    start.add_argument("--resume", action="store_true", help="go on from the checkpoint in DIR")
+    start.add_argument(
+        "--resume-if-possible", action="store_true",
+        help="the same if a run of this very case and build was stopped there, else start anew",
+    )  # fmt: skip
     one.add_argument("--quiet", action="store_true", help="print errors only")
     _source_of_case(one)
 
@@ -129,7 +134,9 @@ def _study(commands) -> None:
     one.add_argument(
         "--out", type=_path, metavar="DIR", help="results folder; none: check and list the runs"
     )
-    one.add_argument("--cores", type=_threads, metavar="N", help="runs at a time, default all")
+    where = one.add_mutually_exclusive_group()
+    where.add_argument("--cores", type=_threads, metavar="N", help="runs at a time, default all")
+    where.add_argument("--profile", metavar="DIR", help="run on a cluster: slurm, pbs or a folder")
     one.add_argument("--quiet", action="store_true", help="print errors only")
 
 

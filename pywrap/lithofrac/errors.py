@@ -14,6 +14,10 @@ class FileError(ValueError):
     """A file is not what it should be; the message names it and says why."""
 
 
+class GuardError(CoreError):
+    """A guard has stopped the run; the message says where, why, and what to try."""
+
+
 class CheckpointError(CoreError):
     """There is no checkpoint that this run can go on from."""
 

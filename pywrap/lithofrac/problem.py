@@ -210,6 +210,32 @@ class Fracture:
 
 
 @dataclass(frozen=True)
+class Guards:
+    """When a run is worth a warning, and when it is stopped; all are relative.
+
+    energy_residual : of the ledger, over the largest energy so far
+    element_area : smallest one, over that in the reference
+    overlap : depth of a boundary node in an element, over the shortest boundary edge
+    time_step : critical step of the smallest piece of an element, over that of the mesh
+    unconverged : steps in which contact did not converge, over all steps of the run
+    speed : of the fastest node, over the P wave speed of its body
+    """
+
+    energy_residual_warning: float = 1e-4
+    energy_residual_stop: float = 1e-2
+    element_area_warning: float = 0.1
+    element_area_stop: float = 0.0
+    overlap_warning: float = 0.01
+    overlap_stop: float = 0.05
+    time_step_warning: float = 0.39
+    time_step_stop: float = 0.36
+    unconverged_warning: float = 0.05
+    unconverged_stop: float = 0.5
+    speed_warning: float = 0.1
+    speed_stop: float = 0.2
+
+
+@dataclass(frozen=True)
 class Measures:
     """How axial stress and strain of a specimen follow from the boundary records.
 
@@ -243,3 +269,5 @@ class Problem:
     measures: Measures | None = None
     records: int = 1000  # rows of the history
     fields: int = 5  # VTU frames, 0 for none
+    guards: Guards = Guards()
+    checkpoint_seconds: float = 20.0  # of wall time between two checkpoints; no bit depends on it

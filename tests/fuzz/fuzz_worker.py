@@ -38,7 +38,7 @@ from lithofrac.scenes import _gmsh, make_mesh
 
 GOOD = ("result", "large", "refused", "stopped")
 MOST_ELEMENTS, MOST_STEPS = 20_000, 100
-PROGRESS = re.compile(r"[\w.@-]+: step \d+ of \d+ ")
+PROGRESS = re.compile(r"[\w.@-]+: (warning: |step \d+ of \d+ )")
 MOST_LETTERS = 1500  # of a sentence: one may list all keys of a section
 MOST_MEMORY = 6_000_000_000
 WITH_PLATENS = ("plane_strain", "punch", "brazilian", "hole")

@@ -30,6 +30,7 @@ def misfits(case: Case) -> list[str]:
         *_fracture_problems(case),
         *_size_problems(case),
         *_count_problems(case),
+        *case.guards.problems(),
     ]
 
 

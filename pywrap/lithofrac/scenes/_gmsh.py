@@ -81,13 +81,13 @@ def meshed(geo: str) -> meshio.Mesh:
     """
     with tempfile.TemporaryDirectory(prefix="lithofrac-") as name:
         folder = Path(name)
-        (folder / "scene.geo").write_text(geo)
+        (folder / "scene.geo").write_text(geo, encoding="utf-8")
         command = [*_gmsh(), "scene.geo", "-2", "-o", "scene.msh", "-noenv", "-v", "2"]
         own_home = {**os.environ, "HOME": name, "OMP_NUM_THREADS": "1"}
         try:
             done = subprocess.run(
-                command, cwd=folder, env=own_home, capture_output=True, text=True,
-                timeout=TIME_LIMIT,
+                command, cwd=folder, env=own_home, capture_output=True, encoding="utf-8",
+                errors="replace", timeout=TIME_LIMIT,
             )  # fmt: skip
         except (OSError, subprocess.TimeoutExpired) as error:
             raise MeshError(f"gmsh could not be run: {error}") from None

@@ -82,8 +82,8 @@ def test_command_line_words_are_read_as_yaml():
         (
             {"velocity": 1},
             "velocity: unknown key, expected one of: budget_element_steps, contact, damping, "
-            "fracture, loading, material, mesh, output, platens, probes, scene, time_step_factor, "
-            "title",
+            "fracture, guards, loading, material, mesh, output, platens, probes, scene, "
+            "time_step_factor, title",
         ),
         ({"loading.speed_m_s": "fast"}, "loading.speed_m_s = fast: expected a number"),
         (
