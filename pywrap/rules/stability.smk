@@ -15,7 +15,7 @@ rule make_stability:
         STABILITY,
     log:
         f"{OUT}/log/stability.txt",
-    threads: workflow.cores
+    threads: 64  # all there are
     message:
         "Try the extremes of the model"
     shell:
