@@ -1,8 +1,9 @@
 !> Fixed partition of chunks and nodes, so that sums never depend on the number of threads.
 !>
-!> Each block of chunks adds its element forces to its own buffer, which has one place for every
-!> node that the block uses, in order of nodes. A node then sums over the buffers in order of
-!> blocks. Nodes that cracks have added are as cheap as any: numbers need not be near each other.
+!> Element forces go to a buffer with one place for every node, for the first block of chunks that
+!> uses it, and one more for each other block that does: no two blocks write to one place. A node
+!> then adds its further places in order of blocks. Nodes that cracks have added are as cheap as
+!> any: numbers need not be near each other.
 module lithofrac_mechanics_blocks
    use lithofrac_base_kinds, only: wp
    use lithofrac_mechanics_chunks, only: chunks_type, width
@@ -17,14 +18,12 @@ module lithofrac_mechanics_blocks
    type :: blocks_type
       integer :: n_blocks = 0                    !! blocks of chunks
       integer, allocatable :: first_chunk(:)     !! (n_blocks + 1)
-      integer, allocatable :: first_place(:)     !! (n_blocks + 1) places of a block
-      integer, allocatable :: node(:)            !! (places) ascending within a block
       integer, allocatable :: place(:, :, :)     !! (width, 3, n_chunks) place of a corner
-      real(wp), allocatable :: buffer(:, :)      !! (2, places) element forces [N]
+      real(wp), allocatable :: buffer(:, :)      !! (2, places) element forces [N], 0 between steps
       integer :: n_runs = 0                      !! runs of nodes of one body
       integer, allocatable :: first_node(:)      !! (n_runs + 1)
-      integer, allocatable :: first_source(:)    !! (n_runs + 1) into `source`
-      integer, allocatable :: source(:, :)       !! (2, n) first and last place, by block
+      integer, allocatable :: first_shared(:)    !! (n_runs + 1) into `shared`
+      integer, allocatable :: shared(:, :)       !! (2, n) node and its further place, by block
    end type blocks_type
 
 contains
@@ -35,66 +34,54 @@ contains
       type(chunks_type), intent(in) :: chunks
       type(mesh_type), intent(in) :: mesh
 
-      integer :: block, n
-      integer :: node(3*width*chunks%n_chunks), last_use(mesh%n_nodes), place_of(mesh%n_nodes)
+      integer :: block
+      integer, allocatable :: shared(:, :)
 
       blocks%n_blocks = min(chunks%n_chunks, max(8, chunks%n_chunks/32))
-      allocate (blocks%first_chunk(blocks%n_blocks + 1), blocks%first_place(blocks%n_blocks + 1))
-      allocate (blocks%place(width, 3, chunks%n_chunks))
+      allocate (blocks%first_chunk(blocks%n_blocks + 1))
       do block = 0, blocks%n_blocks
          blocks%first_chunk(block + 1) = 1 + (block*chunks%n_chunks)/blocks%n_blocks
       end do
-      last_use = 0
-      n = 0
-      do block = 1, blocks%n_blocks
-         blocks%first_place(block) = n + 1
-         call list_nodes(blocks, block, chunks, last_use, place_of, node, n)
-      end do
-      blocks%first_place(blocks%n_blocks + 1) = n + 1
-      blocks%node = node(:n)
-      allocate (blocks%buffer(2, n), source=0.0_wp)
+      call find_places(blocks, chunks, mesh%n_nodes, shared)
+      allocate (blocks%buffer(2, mesh%n_nodes + size(shared, 2)), source=0.0_wp)
       call cut_runs(blocks, mesh)
-      call find_sources(blocks)
+      call sort_shared(blocks, shared)
    end subroutine new_blocks
 
-   !> Nodes of a block, ascending, behind the first `n`; and the places of its corners.
-   subroutine list_nodes(blocks, block, chunks, last_use, place_of, node, n)
+   !> Places of the corners; and the nodes that a further block uses, with their place in it.
+   subroutine find_places(blocks, chunks, n_nodes, shared)
       type(blocks_type), intent(inout) :: blocks
-      integer, intent(in) :: block
       type(chunks_type), intent(in) :: chunks
-      integer, intent(inout) :: last_use(:)   !! (n_nodes) last block that has used a node
-      integer, intent(inout) :: place_of(:)   !! (n_nodes) working space
-      integer, intent(inout) :: node(:)
-      integer, intent(inout) :: n
+      integer, intent(in) :: n_nodes
+      integer, allocatable, intent(out) :: shared(:, :)  !! (2, n) node, place; in order of blocks
 
-      integer :: chunk, lane, k, i, low, high
+      integer :: block, chunk, lane, k, node, n
+      integer, allocatable :: last_use(:), place_of(:)
 
-      low = huge(low)
-      high = 0
-      do chunk = blocks%first_chunk(block), blocks%first_chunk(block + 1) - 1
-         do k = 1, 3
-            do lane = 1, width
-               i = chunks%node(lane, k, chunk)
-               last_use(i) = block
-               low = min(low, i)
-               high = max(high, i)
+      allocate (last_use(n_nodes), place_of(n_nodes), source=0)
+      allocate (blocks%place(width, 3, chunks%n_chunks))
+      allocate (shared(2, 3*width*chunks%n_chunks))
+      n = 0
+      do block = 1, blocks%n_blocks
+         do chunk = blocks%first_chunk(block), blocks%first_chunk(block + 1) - 1
+            do k = 1, 3
+               do lane = 1, width
+                  node = chunks%node(lane, k, chunk)
+                  if (last_use(node) == 0) then
+                     place_of(node) = node
+                  else if (last_use(node) /= block) then
+                     n = n + 1
+                     place_of(node) = n_nodes + n
+                     shared(:, n) = [node, n_nodes + n]
+                  end if
+                  last_use(node) = block
+                  blocks%place(lane, k, chunk) = place_of(node)
+               end do
             end do
          end do
       end do
-      do i = low, high
-         if (last_use(i) /= block) cycle
-         n = n + 1
-         node(n) = i
-         place_of(i) = n
-      end do
-      do chunk = blocks%first_chunk(block), blocks%first_chunk(block + 1) - 1
-         do k = 1, 3
-            do lane = 1, width
-               blocks%place(lane, k, chunk) = place_of(chunks%node(lane, k, chunk))
-            end do
-         end do
-      end do
-   end subroutine list_nodes
+      shared = shared(:, :n)
+   end subroutine find_places
 
    !> Runs of consecutive nodes of one body.
    subroutine cut_runs(blocks, mesh)
@@ -117,49 +104,55 @@ contains
       blocks%first_node = first(:blocks%n_runs + 1)
    end subroutine cut_runs
 
-   !> Places that reach into each run of nodes, in order of blocks.
-   subroutine find_sources(blocks)
+   !> Further places of each run of nodes; those of one node stay in order of blocks.
+   subroutine sort_shared(blocks, shared)
       type(blocks_type), intent(inout) :: blocks
+      integer, intent(in) :: shared(:, :)   !! (2, n) node, place
 
-      integer :: run, block, n, next(blocks%n_blocks), last(blocks%n_blocks)
+      integer :: i, run, next(blocks%n_runs)
+      integer, allocatable :: run_of(:)
 
-      allocate (blocks%first_source(blocks%n_runs + 1))
-      allocate (blocks%source(2, blocks%n_runs*blocks%n_blocks))
-      next = blocks%first_place(:blocks%n_blocks)
-      n = 0
+      allocate (run_of(blocks%first_node(blocks%n_runs + 1) - 1))
+      allocate (blocks%first_shared(blocks%n_runs + 1), source=0)
       do run = 1, blocks%n_runs
-         blocks%first_source(run) = n + 1
-         do block = 1, blocks%n_blocks
-            last(block) = next(block) - 1
-            do while (last(block) < blocks%first_place(block + 1) - 1)
-               if (blocks%node(last(block) + 1) >= blocks%first_node(run + 1)) exit
-               last(block) = last(block) + 1
-            end do
-            if (last(block) < next(block)) cycle
-            n = n + 1
-            blocks%source(:, n) = [next(block), last(block)]
-            next(block) = last(block) + 1
-         end do
+         run_of(blocks%first_node(run):blocks%first_node(run + 1) - 1) = run
       end do
-      blocks%first_source(blocks%n_runs + 1) = n + 1
-      blocks%source = blocks%source(:, :n)
-   end subroutine find_sources
+      do i = 1, size(shared, 2)
+         run = run_of(shared(1, i))
+         blocks%first_shared(run + 1) = blocks%first_shared(run + 1) + 1
+      end do
+      blocks%first_shared(1) = 1
+      do run = 1, blocks%n_runs
+         next(run) = blocks%first_shared(run)
+         blocks%first_shared(run + 1) = blocks%first_shared(run + 1) + blocks%first_shared(run)
+      end do
+      allocate (blocks%shared(2, size(shared, 2)))
+      do i = 1, size(shared, 2)
+         run = run_of(shared(1, i))
+         blocks%shared(:, next(run)) = shared(:, i)
+         next(run) = next(run) + 1
+      end do
+   end subroutine sort_shared
 
-   !> Internal force of the nodes of one run, summed over blocks in their order.
+   !> Internal force of the nodes of one run, summed over blocks in their order; empties the buffer.
    pure subroutine assemble(blocks, run, force)
-      type(blocks_type), intent(in) :: blocks
+      type(blocks_type), intent(inout) :: blocks
       integer, intent(in) :: run
       real(wp), intent(inout), contiguous :: force(:, :)  !! (2, n_nodes) [N]
 
-      integer :: i, place, node
+      integer :: i, place, node, first, last
 
-      force(:, blocks%first_node(run):blocks%first_node(run + 1) - 1) = 0.0_wp
-      do i = blocks%first_source(run), blocks%first_source(run + 1) - 1
-         do place = blocks%source(1, i), blocks%source(2, i)
-            node = blocks%node(place)
-            force(1, node) = force(1, node) + blocks%buffer(1, place)
-            force(2, node) = force(2, node) + blocks%buffer(2, place)
-         end do
+      first = blocks%first_node(run)
+      last = blocks%first_node(run + 1) - 1
+      force(:, first:last) = blocks%buffer(:, first:last)
+      blocks%buffer(:, first:last) = 0.0_wp
+      do i = blocks%first_shared(run), blocks%first_shared(run + 1) - 1
+         node = blocks%shared(1, i)
+         place = blocks%shared(2, i)
+         force(1, node) = force(1, node) + blocks%buffer(1, place)
+         force(2, node) = force(2, node) + blocks%buffer(2, place)
+         blocks%buffer(1, place) = 0.0_wp
+         blocks%buffer(2, place) = 0.0_wp
       end do
    end subroutine assemble
 

@@ -10,7 +10,7 @@ module lithofrac_mechanics_internal_force
    use lithofrac_mechanics_chunks, only: chunks_type, width
    use lithofrac_mechanics_fields, only: fields_type, inelastic_type
    use lithofrac_mechanics_kinematics, only: elastic_stress, gather, gather_previous, &
-      hoop_strain, nodal_forces, scatter, scatter_hoop, strains
+      hoop_strain, nodal_forces, scatter, scatter_hoop, strains, virgin_forces
    implicit none
    private
 
@@ -41,12 +41,23 @@ contains
       type(failure_type), intent(inout) :: failure
 
       real(wp) :: strain(width, 4), rotation(width, 3), stress(width, 4), force(width, 4)
+      real(wp) :: du(width, 4)
+      logical :: done
 
-      call predict(chunks, chunk, rock, fields, state, strain, rotation, stress)
-      if (rock%yields) call return_flagged(chunks, chunk, rock, fields, dt, state, stress, failure)
-      associate (volume => chunks%volume(:, chunk))
-         call nodal_forces(width, chunks%gradient(:, :, chunk), volume, strain, rotation, stress, &
-            force)
+      associate (gradient => chunks%gradient(:, :, chunk), volume => chunks%volume(:, chunk))
+         call displacements(chunks, chunk, fields, du, strain(:, 3))
+         done = .false.
+         if (.not. state%touched(chunk)) then
+            call virgin_forces(rock, gradient, volume, du, strain(:, 3), force, stress(:, 3), done)
+            done = done .or. .not. rock%yields
+         end if
+         if (.not. done) then
+            call predict(chunks, chunk, rock, du, state, strain, rotation, stress)
+            if (rock%yields) then
+               call return_flagged(chunks, chunk, rock, fields, dt, state, stress, failure)
+            end if
+            call nodal_forces(width, gradient, volume, strain, rotation, stress, force)
+         end if
          call scatter(place, force, buffer)
          if (chunks%axisymmetric) call scatter_hoop(place, chunks%hoop(:, chunk), volume, &
             stress(:, 3), buffer)
@@ -63,9 +74,10 @@ contains
       real(wp), intent(out) :: strain(width, 4)   !! U - I, unrotated, engineering shear
       real(wp), intent(out) :: stress(width, 4)   !! unrotated [Pa]
 
-      real(wp) :: rotation(width, 3)
+      real(wp) :: du(width, 4), rotation(width, 3)
 
-      call predict(chunks, chunk, rock, fields, state, strain, rotation, stress)
+      call displacements(chunks, chunk, fields, du, strain(:, 3))
+      call predict(chunks, chunk, rock, du, state, strain, rotation, stress)
    end subroutine chunk_stress
 
    !> Forces of one element on its corners as it is, without any update; not axisymmetric.
@@ -99,24 +111,33 @@ contains
       force(:, 1) = -(corners(1:2) + corners(3:4))
    end function element_force
 
-   subroutine predict(chunks, chunk, rock, fields, state, strain, rotation, stress)
+   !> Displacements of the corners relative to corner 1, and the strain out of the plane.
+   subroutine displacements(chunks, chunk, fields, du, strain_zz)
       type(chunks_type), intent(in) :: chunks
       integer, intent(in) :: chunk
-      type(rock_type), intent(in) :: rock
       type(fields_type), intent(in) :: fields
-      type(inelastic_type), intent(in) :: state
-      real(wp), intent(out) :: strain(width, 4)
-      real(wp), intent(out) :: rotation(width, 3)
-      real(wp), intent(out) :: stress(width, 4)
-
-      real(wp) :: du(width, 4)
+      real(wp), intent(out) :: du(width, 4)              !! [m]
+      real(wp), intent(out) :: strain_zz(width)
 
       call gather(chunks%node(:, :, chunk), fields%u, du)
       if (chunks%axisymmetric) then
-         call hoop_strain(chunks%node(:, :, chunk), fields%u, chunks%hoop(:, chunk), strain(:, 3))
+         call hoop_strain(chunks%node(:, :, chunk), fields%u, chunks%hoop(:, chunk), strain_zz)
       else
-         strain(:, 3) = 0.0_wp
+         strain_zz = 0.0_wp
       end if
+   end subroutine displacements
+
+   !> Strain, rotation and trial stress of a chunk.
+   subroutine predict(chunks, chunk, rock, du, state, strain, rotation, stress)
+      type(chunks_type), intent(in) :: chunks
+      integer, intent(in) :: chunk
+      type(rock_type), intent(in) :: rock
+      real(wp), intent(in) :: du(width, 4)
+      type(inelastic_type), intent(in) :: state
+      real(wp), intent(inout) :: strain(width, 4)        !! zz is given
+      real(wp), intent(out) :: rotation(width, 3)
+      real(wp), intent(out) :: stress(width, 4)
+
       call strains(width, chunks%gradient(:, :, chunk), du, strain, rotation)
       if (state%touched(chunk)) then
          call elastic_stress(width, rock%lame, rock%shear, strain, state%strain(:, :, chunk), &

@@ -9,12 +9,13 @@
 !> Components: xx, yy, zz, xy; shear strain is engineering (Klerck 2004, section 2.1).
 module lithofrac_mechanics_kinematics
    use lithofrac_base_kinds, only: wp
+   use lithofrac_material_rock, only: rock_type
    use lithofrac_mechanics_chunks, only: width
    implicit none
    private
 
    public :: elastic_stress, gather, gather_previous, hoop_strain, nodal_forces
-   public :: scatter, scatter_hoop, strains
+   public :: scatter, scatter_hoop, strains, virgin_forces
 
 contains
 
@@ -58,27 +59,12 @@ contains
       real(wp), intent(out) :: rotation(n, 3)       !! cos, sin, 1/tr U
 
       integer :: i
-      real(wp) :: h11, h12, h21, h22, c, s, t, r, versine
 
-      !$omp simd private(h11, h12, h21, h22, c, s, t, r, versine)
+      !$omp simd
       do i = 1, n
-         h11 = du(i, 1)*gradient(i, 1) + du(i, 3)*gradient(i, 3)
-         h12 = du(i, 1)*gradient(i, 2) + du(i, 3)*gradient(i, 4)
-         h21 = du(i, 2)*gradient(i, 1) + du(i, 4)*gradient(i, 3)
-         h22 = du(i, 2)*gradient(i, 2) + du(i, 4)*gradient(i, 4)
-         c = 2.0_wp + h11 + h22
-         t = h21 - h12
-         r = 1.0_wp/sqrt(c*c + t*t)
-         rotation(i, 3) = r
-         c = c*r
-         s = t*r
-         ! 1 - cos without cancellation, so that small strains keep their digits
-         versine = merge(s*s/(1.0_wp + abs(c)), 1.0_wp - c, c > 0.0_wp)
-         rotation(i, 1) = c
-         rotation(i, 2) = s
-         strain(i, 1) = h11 - versine*(1.0_wp + h11) + s*h21
-         strain(i, 2) = h22 - versine*(1.0_wp + h22) - s*h12
-         strain(i, 4) = c*(h12 + h21) + s*(h22 - h11)
+         call stretch(gradient(i, 1), gradient(i, 2), gradient(i, 3), gradient(i, 4), du(i, 1), &
+            du(i, 2), du(i, 3), du(i, 4), strain(i, 1), strain(i, 2), strain(i, 4), &
+            rotation(i, 1), rotation(i, 2), rotation(i, 3))
       end do
    end subroutine strains
 
@@ -106,18 +92,12 @@ contains
       real(wp), intent(out) :: stress(n, 4)         !! [Pa]
 
       integer :: i
-      real(wp) :: e1, e2, e3, pressure
 
-      !$omp simd private(e1, e2, e3, pressure)
+      !$omp simd
       do i = 1, n
-         e1 = strain(i, 1) - inelastic(i, 1)
-         e2 = strain(i, 2) - inelastic(i, 2)
-         e3 = strain(i, 3) - inelastic(i, 3)
-         pressure = lame*(e1 + e2 + e3)
-         stress(i, 1) = pressure + 2.0_wp*shear*e1
-         stress(i, 2) = pressure + 2.0_wp*shear*e2
-         stress(i, 3) = pressure + 2.0_wp*shear*e3
-         stress(i, 4) = shear*(strain(i, 4) - inelastic(i, 4))
+         call hooke(lame, shear, strain(i, 1) - inelastic(i, 1), strain(i, 2) - inelastic(i, 2), &
+            strain(i, 3) - inelastic(i, 3), strain(i, 4) - inelastic(i, 4), stress(i, 1), &
+            stress(i, 2), stress(i, 3), stress(i, 4))
       end do
    end subroutine elastic_stress
 
@@ -132,26 +112,136 @@ contains
       real(wp), intent(out) :: force(n, 4)          !! x2, y2, x3, y3 [N] per metre or per radian
 
       integer :: i
-      real(wp) :: b, s11, s12, s21, s22, p11, p12, p21, p22
 
-      !$omp simd private(b, s11, s12, s21, s22, p11, p12, p21, p22)
+      !$omp simd
       do i = 1, n
-         b = rotation(i, 3)*(0.5_wp*(stress(i, 2) - stress(i, 1))*strain(i, 4) &
-            + stress(i, 4)*(strain(i, 1) - strain(i, 2)))
-         s11 = volume(i)*stress(i, 1)
-         s22 = volume(i)*stress(i, 2)
-         s12 = volume(i)*(stress(i, 4) + b)
-         s21 = volume(i)*(stress(i, 4) - b)
-         p11 = rotation(i, 1)*s11 - rotation(i, 2)*s21
-         p12 = rotation(i, 1)*s12 - rotation(i, 2)*s22
-         p21 = rotation(i, 2)*s11 + rotation(i, 1)*s21
-         p22 = rotation(i, 2)*s12 + rotation(i, 1)*s22
-         force(i, 1) = p11*gradient(i, 1) + p12*gradient(i, 2)
-         force(i, 2) = p21*gradient(i, 1) + p22*gradient(i, 2)
-         force(i, 3) = p11*gradient(i, 3) + p12*gradient(i, 4)
-         force(i, 4) = p21*gradient(i, 3) + p22*gradient(i, 4)
+         call corner_forces(gradient(i, 1), gradient(i, 2), gradient(i, 3), gradient(i, 4), &
+            volume(i), strain(i, 1), strain(i, 2), strain(i, 4), rotation(i, 1), rotation(i, 2), &
+            rotation(i, 3), stress(i, 1), stress(i, 2), stress(i, 4), force(i, 1), force(i, 2), &
+            force(i, 3), force(i, 4))
       end do
    end subroutine nodal_forces
+
+   !> All of it in one pass, for a chunk that has never yielded; and whether that stays so.
+   !>
+   !> `inside` is true only when every stress is within the virgin strength. The check takes no
+   !> root, so that a stress on the very edge may be taken for one beyond it, never the reverse.
+   pure subroutine virgin_forces(rock, gradient, volume, du, strain_zz, force, stress_zz, inside)
+      type(rock_type), intent(in) :: rock
+      real(wp), intent(in) :: gradient(width, 4)    !! [1/m]
+      real(wp), intent(in) :: volume(width)         !! [m3] per metre or per radian
+      real(wp), intent(in) :: du(width, 4)          !! x2, y2, x3, y3 relative to corner 1 [m]
+      real(wp), intent(in) :: strain_zz(width)
+      real(wp), intent(out) :: force(width, 4)      !! x2, y2, x3, y3 [N] per metre or per radian
+      real(wp), intent(out) :: stress_zz(width)     !! [Pa]
+      logical, intent(out) :: inside
+
+      integer :: i
+      real(wp) :: xx, yy, xy, c, s, r, sxx, syy, szz, sxy, worst
+
+      worst = -huge(worst)
+      !$omp simd private(xx, yy, xy, c, s, r, sxx, syy, szz, sxy) reduction(max:worst)
+      do i = 1, width
+         call stretch(gradient(i, 1), gradient(i, 2), gradient(i, 3), gradient(i, 4), du(i, 1), &
+            du(i, 2), du(i, 3), du(i, 4), xx, yy, xy, c, s, r)
+         call hooke(rock%lame, rock%shear, xx, yy, strain_zz(i), xy, sxx, syy, szz, sxy)
+         worst = max(worst, beyond(sxx, syy, szz, sxy, rock%sin_phi0, rock%c_cos_phi0, &
+            rock%tensile_strength))
+         call corner_forces(gradient(i, 1), gradient(i, 2), gradient(i, 3), gradient(i, 4), &
+            volume(i), xx, yy, xy, c, s, r, sxx, syy, sxy, force(i, 1), force(i, 2), force(i, 3), &
+            force(i, 4))
+         stress_zz(i) = szz
+      end do
+      inside = worst < 0.0_wp
+   end subroutine virgin_forces
+
+   !> Below zero only where a stress is within Mohr-Coulomb and below the tensile strength [Pa2].
+   !>
+   !> With in-plane principal stresses mean +- radius each plane bounds the radius from above.
+   elemental function beyond(xx, yy, zz, xy, sin_phi, c_cos_phi, ft) result(excess)
+      real(wp), intent(in) :: xx, yy, zz, xy   !! [Pa]
+      real(wp), intent(in) :: sin_phi
+      real(wp), intent(in) :: c_cos_phi        !! [Pa]
+      real(wp), intent(in) :: ft               !! [Pa]
+      real(wp) :: excess
+
+      real(wp) :: mean, half, room
+
+      mean = 0.5_wp*(xx + yy)
+      half = 0.5_wp*(xx - yy)
+      room = min(c_cos_phi - mean*sin_phi, ft - mean, &
+         (2.0_wp*c_cos_phi + zz*(1.0_wp - sin_phi))*(1.0_wp/(1.0_wp + sin_phi)) - mean, &
+         (2.0_wp*c_cos_phi - zz*(1.0_wp + sin_phi))*(1.0_wp/(1.0_wp - sin_phi)) + mean)
+      room = merge(max(room, 0.0_wp), 0.0_wp, zz < ft)
+      excess = half*half + xy*xy - room*room
+   end function beyond
+
+   !> Polar decomposition of one element: strain U - I, and R as cos, sin and 1/tr U.
+   pure subroutine stretch(g2x, g2y, g3x, g3y, u2, v2, u3, v3, xx, yy, xy, c, s, r)
+      real(wp), intent(in) :: g2x, g2y, g3x, g3y   !! gradients of the shape functions [1/m]
+      real(wp), intent(in) :: u2, v2, u3, v3       !! displacements relative to corner 1 [m]
+      real(wp), intent(out) :: xx, yy, xy          !! engineering shear
+      real(wp), intent(out) :: c, s, r
+
+      real(wp) :: h11, h12, h21, h22, t, versine
+
+      h11 = u2*g2x + u3*g3x
+      h12 = u2*g2y + u3*g3y
+      h21 = v2*g2x + v3*g3x
+      h22 = v2*g2y + v3*g3y
+      c = 2.0_wp + h11 + h22
+      t = h21 - h12
+      r = 1.0_wp/sqrt(c*c + t*t)
+      c = c*r
+      s = t*r
+      ! 1 - cos without cancellation, so that small strains keep their digits
+      versine = merge(s*s/(1.0_wp + abs(c)), 1.0_wp - c, c > 0.0_wp)
+      xx = h11 - versine*(1.0_wp + h11) + s*h21
+      yy = h22 - versine*(1.0_wp + h22) - s*h12
+      xy = c*(h12 + h21) + s*(h22 - h11)
+   end subroutine stretch
+
+   !> Isotropic elastic stress of one element [Pa]; engineering shear.
+   pure subroutine hooke(lame, shear, xx, yy, zz, xy, sxx, syy, szz, sxy)
+      real(wp), intent(in) :: lame, shear          !! [Pa]
+      real(wp), intent(in) :: xx, yy, zz, xy       !! elastic strain
+      real(wp), intent(out) :: sxx, syy, szz, sxy  !! [Pa]
+
+      real(wp) :: pressure
+
+      pressure = lame*(xx + yy + zz)
+      sxx = pressure + 2.0_wp*shear*xx
+      syy = pressure + 2.0_wp*shear*yy
+      szz = pressure + 2.0_wp*shear*zz
+      sxy = shear*xy
+   end subroutine hooke
+
+   !> Internal forces of one element on corners 2 and 3 [N] per metre or per radian.
+   pure subroutine corner_forces(g2x, g2y, g3x, g3y, volume, xx, yy, xy, c, s, r, sxx, syy, sxy, &
+      f2x, f2y, f3x, f3y)
+      real(wp), intent(in) :: g2x, g2y, g3x, g3y   !! [1/m]
+      real(wp), intent(in) :: volume               !! [m3] per metre or per radian
+      real(wp), intent(in) :: xx, yy, xy           !! strain, engineering shear
+      real(wp), intent(in) :: c, s, r              !! rotation, see `stretch`
+      real(wp), intent(in) :: sxx, syy, sxy        !! unrotated stress [Pa]
+      real(wp), intent(out) :: f2x, f2y, f3x, f3y
+
+      real(wp) :: b, s11, s12, s21, s22, p11, p12, p21, p22
+
+      b = r*(0.5_wp*(syy - sxx)*xy + sxy*(xx - yy))
+      s11 = volume*sxx
+      s22 = volume*syy
+      s12 = volume*(sxy + b)
+      s21 = volume*(sxy - b)
+      p11 = c*s11 - s*s21
+      p12 = c*s12 - s*s22
+      p21 = s*s11 + c*s21
+      p22 = s*s12 + c*s22
+      f2x = p11*g2x + p12*g2y
+      f2y = p21*g2x + p22*g2y
+      f3x = p11*g3x + p12*g3y
+      f3y = p21*g3x + p22*g3y
+   end subroutine corner_forces
 
    !> Add the forces of a chunk to the buffer of its block, in the order of its elements.
    pure subroutine scatter(place, force, buffer)

@@ -43,6 +43,7 @@ contains
 
       if (model%started) return
       allocate (failures(model%blocks%n_blocks))
+      model%blocks%buffer = 0.0_wp
       do block = 1, model%blocks%n_blocks
          call block_force(model, block, failures(block))
       end do
@@ -149,9 +150,6 @@ contains
 
       integer :: chunk
 
-      associate (blocks => model%blocks)
-         blocks%buffer(:, blocks%first_place(block):blocks%first_place(block + 1) - 1) = 0.0_wp
-      end associate
       do chunk = model%blocks%first_chunk(block), model%blocks%first_chunk(block + 1) - 1
          call chunk_force(model%chunks, chunk, model%rocks(model%chunks%body(chunk)), &
             model%fields, merge(model%dt, 0.0_wp, model%started), model%state, &
