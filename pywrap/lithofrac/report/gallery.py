@@ -7,7 +7,7 @@ from lithofrac.data import DataError
 from lithofrac.report.captions import caption
 from lithofrac.report.write import PICTURE, provenance, read_tables
 
-LARGEST = 300_000  # bytes of a picture; all of them are fetched with the repository
+LARGEST = 400_000  # bytes of a picture; all of them are fetched with the repository
 HEAD = """# Gallery
 
 Pictures and tables of the last full run, made by `snakemake --cores all pages` as all of this
