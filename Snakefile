@@ -1,14 +1,16 @@
 # From a suite to the report, below out/; every rule calls the command line and nothing else.
 # Another suite: `--config suite=configs/suite_quick.yaml`.
+from functools import cache
 from pathlib import Path
 
-from lithofrac.config import load_suite
+from lithofrac.config import load_suite, predicted
 from lithofrac.report import category_of, load_sheets
 
 SUITE = config.get("suite", "configs/suite.yaml")
 OUT = config.get("out", "out")
 ENTRIES = load_suite(SUITE)
-CASES = {name: ENTRIES.case(name).resolved() for name in ENTRIES.names}
+READ = {name: ENTRIES.case(name) for name in ENTRIES.names}
+CASES = {name: case.resolved() for name, case in READ.items()}
 SCENES = {case["title"]: name for name, case in reversed(CASES.items())}.values()
 VARIANTS = ENTRIES.variants  # name -> name of its twin
 DISCRETE = [name for name, case in CASES.items() if case["fracture"]["mode"] != "off"]
@@ -169,6 +171,17 @@ def on_page(wildcards):
 report: "reports/captions/suite.rst"
 
 
+@cache
+def cost(case):
+    """What a run is expected to take; asked for job by job, as some need a moment."""
+    return predicted(READ[case])
+
+
+# It writes to the tree, not below `out`: never on a node of a cluster.
+localrules:
+    pages,
+
+
 wildcard_constraints:
     case="|".join(CASES),
     compared="|".join(COMPARED),
@@ -193,13 +206,19 @@ rule simulate:
         f"{OUT}/log/simulate_{{case}}.txt",
     benchmark:
         f"{OUT}/benchmarks/{{case}}.tsv"
+    group:
+        lambda wildcards: cost(wildcards.case).group
+    threads: lambda wildcards: cost(wildcards.case).threads
+    resources:
+        mem_mb=lambda wildcards: cost(wildcards.case).mem_mb,
+        runtime=lambda wildcards: cost(wildcards.case).runtime,
     params:
         case=lambda wildcards: CASES[wildcards.case],
     message:
         "Mesh and run {wildcards.case}"
     shell:
         "lithofrac run {wildcards.case} --suite {SUITE} --out {OUT}/runs/{wildcards.case}"
-        " --threads {threads} > {log} 2>&1"
+        " --threads {threads} --resume-if-possible > {log} 2>&1"
 
 
 rule bench:
@@ -433,3 +452,4 @@ rule page:
 
 
 include: "pywrap/rules/regression.smk"
+include: "pywrap/rules/stability.smk"

@@ -5,10 +5,12 @@ python3 tasks.py reproduce [--suite FILE] [...]  run the suite, write out/report
                                                  further arguments go to snakemake
 python3 tasks.py test [--all]                    linters, tests on three builds, line coverage;
                                                  --all adds the tests marked slow
+python3 tasks.py mutants [NAME ...]              break the code on purpose, see which test notices;
+                                                 writes reports/mutants.md
 python3 tasks.py setup                           only install what is missing and build
 python3 tasks.py benchmark                       speed of the core, kept in out/benchmark.json
-python3 tasks.py portable                        a second build, beside the installed one: its bits
-                                                 are the same on every x86-64, for references
+python3 tasks.py portable                        a second build beside the installed one, for
+                                                 references: bits of any x86-64 since 2013
 
 Each task sets up what it needs first; once that is done, a second call goes straight to work.
 One file on purpose: it has to run before anything of this project is installed.
@@ -309,11 +311,30 @@ def setup():
 # ---------------------------------------------------------------- reproduce, benchmark
 
 
+def forget_killed_pipeline():
+    """Take away the lock that a killed snakemake left here; one that is alive keeps its own."""
+    locks = ROOT / ".snakemake" / "locks"
+    if not any(locks.glob("*.lock")) or not Path("/proc/self/cwd").exists():
+        return
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            name = (process / "cmdline").read_bytes()
+            if b"snakemake" in name and Path(os.readlink(str(process / "cwd"))) == ROOT:
+                return
+        except PermissionError:  # of another user: perhaps here
+            return
+        except OSError:  # it has just ended
+            continue
+    shutil.rmtree(locks)
+    say("the last pipeline here was killed: going on where it was")
+
+
 def reproduce(extra):
     """A suite on all cores, then its report; `extra` goes to snakemake, but for --suite FILE."""
     if extra[:1] == ["--suite"]:
         extra = ["--config", f"suite={' '.join(extra[1:2])}", *extra[2:]]
     setup()
+    forget_killed_pipeline()
     snakemake = [BIN / "python", "-m", "snakemake"]
     with stage("suite"):
         need(
@@ -466,6 +487,14 @@ def test(everything):
     sys.exit(1 if wrong else 0)
 
 
+def mutants(extra):
+    """Mistakes made on purpose in copies of the tree: does a test notice each of them?"""
+    make_environment()
+    with stage("mutants"):
+        code = call(BIN / "python", "tests/reliability/mutation.py", *extra)
+    sys.exit(code)
+
+
 def main(arguments):
     refuse_old_python(sys.version_info)
     task, extra = (arguments or ["help"])[0], arguments[1:]
@@ -477,6 +506,8 @@ def main(arguments):
         test(everything=bool(extra))
     elif task == "portable" and not extra:
         portable()
+    elif task == "mutants":
+        mutants(extra)
     elif task == "benchmark":
         benchmark(extra)
     elif task in ("help", "-h", "--help"):

@@ -13,6 +13,7 @@ BUILD = os.environ.get("LITHOFRAC_BUILD", "release")
 # Share of the random states that the slower builds take: they look for wrong memory, not for rare
 # branches, and are 3 and 15 times slower.
 SHARE = {"release": 1.0, "checked": 0.1, "sanitize": 0.02}[BUILD]
+RELEASE_ONLY = ("no_core", "one_build")
 
 # The same examples for everyone and every time; a deadline would measure the machine.
 settings.register_profile(
@@ -29,11 +30,12 @@ def pytest_report_header():
 
 
 def pytest_collection_modifyitems(config, items):
-    """Tests that never reach the compiled core tell nothing about a special build of it."""
+    """Some tests tell nothing about a special build: no core, or all the program around it."""
     if BUILD == "release":
         return
-    left_out = [item for item in items if item.get_closest_marker("no_core")]
-    items[:] = [item for item in items if not item.get_closest_marker("no_core")]
+    left_out = [item for item in items if any(map(item.get_closest_marker, RELEASE_ONLY))]
+    gone = set(left_out)
+    items[:] = [item for item in items if item not in gone]
     config.hook.pytest_deselected(items=left_out)
 
 

@@ -181,6 +181,38 @@ def test_dry_run_writes_no_report(tasks, calls, monkeypatch):
     assert len(calls) == 1
 
 
+@pytest.fixture
+def locks(tasks, monkeypatch):
+    """Folder of the lock of snakemake, as one that was killed leaves it."""
+    folder = tasks.ROOT / ".snakemake" / "locks"
+    folder.mkdir(parents=True)
+    (folder / "0.output.lock").write_text("out/report.md")
+    return folder
+
+
+@pytest.mark.no_core
+@pytest.mark.skipif(not Path("/proc/self/cwd").exists(), reason="no /proc here")
+def test_lock_of_a_killed_pipeline_is_taken_away(tasks, locks):
+    tasks.forget_killed_pipeline()
+    assert not locks.exists()
+    tasks.forget_killed_pipeline()
+
+
+@pytest.mark.no_core
+@pytest.mark.skipif(not Path("/proc/self/cwd").exists(), reason="no /proc here")
+def test_lock_of_a_pipeline_that_is_alive_stays(tasks, locks):
+    wait = "import sys; print(1, flush=True); sys.stdin.read()"
+    words = [sys.executable, "-c", wait, "snakemake"]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(words, cwd=tasks.ROOT, stdin=pipe, stdout=pipe) as alive:
+        alive.stdout.readline()
+        tasks.forget_killed_pipeline()
+        assert locks.exists()
+        alive.communicate()
+    tasks.forget_killed_pipeline()
+    assert not locks.exists()
+
+
 @pytest.mark.no_core
 def test_portable_build_stands_beside_the_installed_one(tasks, calls):
     tasks.VENV.mkdir()
@@ -191,6 +223,16 @@ def test_portable_build_stands_beside_the_installed_one(tasks, calls):
     assert "-Csetup-args=-Dnative=false" in command
     assert command[command.index("--target") + 1] == str(tasks.BUILD / "portable-site")
     assert "--force-reinstall" not in command
+
+
+@pytest.mark.no_core
+def test_names_of_mutants_reach_their_script(tasks, calls, monkeypatch):
+    monkeypatch.setattr(tasks, "make_environment", lambda: None)
+    with pytest.raises(SystemExit) as left:
+        tasks.main(["mutants", "friction-sign"])
+    assert left.value.code == 0
+    [[_, *words]] = calls
+    assert words == ["tests/reliability/mutation.py", "friction-sign"]
 
 
 @pytest.mark.no_core
@@ -210,5 +252,5 @@ def test_unknown_task_or_option_is_refused_before_anything_is_done(arguments):
 def test_help_names_every_task():
     done = run_front("help")
     assert done.returncode == 0
-    for task in ("reproduce", "test", "setup", "benchmark", "portable"):
+    for task in ("reproduce", "test", "mutants", "setup", "benchmark", "portable"):
         assert f"tasks.py {task}" in done.stdout

@@ -21,7 +21,7 @@ module lithofrac_contact_collect
    real(wp), parameter :: recovery = 0.2_wp        !! of a deeper one, in a critical step
    real(wp), parameter :: push = 1.0e-4_wp         !! largest recovery in a critical step, over h
    real(wp), parameter :: rigid = 1.0e-8_wp        !! compliance along a normal that is none
-   real(wp), parameter :: floor = 1.0e-9_wp        !! of a compliance, over the other component
+   real(wp), parameter :: floor = 1.0e-2_wp        !! of a compliance, over the other component
    real(wp), parameter :: meeting = 1.0e-6_wp      !! overlap of prescribed bodies, over h
    real(wp), parameter :: parallel = 1.0e-9_wp     !! sine of the angle of normals that are one
 

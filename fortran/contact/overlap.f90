@@ -16,9 +16,10 @@ contains
    !> Fail if a boundary node of one connected part stands inside another.
    !>
    !> A part that folds over itself is not looked for.
-   subroutine refuse_overlap(surfaces, mesh, status)
+   subroutine refuse_overlap(surfaces, mesh, origin, status)
       type(surfaces_type), intent(in) :: surfaces
       type(mesh_type), intent(in) :: mesh
+      real(wp), intent(in) :: origin(2)   !! that positions are relative to [m]
       type(status_type), intent(out) :: status
 
       integer, allocatable :: part(:), order(:), first(:)
@@ -40,7 +41,7 @@ contains
                   depth = depth_inside(surfaces, members, i)
                   if (depth <= allowed*surfaces%h) cycle
                   write (words, "(a, i0, a, 2es11.3, a, es9.2, a)") "contact: node ", &
-                     surfaces%node(i), " at", x, " m stands", depth, &
+                     surfaces%node(i), " at", x + origin, " m stands", depth, &
                      " m inside another part; parts must not overlap at the start"
                   call set_failure(status, bad_input, trim(words))
                   return

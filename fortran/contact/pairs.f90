@@ -21,6 +21,7 @@ module lithofrac_contact_pairs
    real(wp), parameter :: separate = 1.0e-9_wp    !! a normal separates above minus this, over h
    real(wp), parameter :: largest_share = 0.5_wp  !! of a reaction on a corner's neighbours
    real(wp), parameter :: turned = 1.0e-3_wp      !! faces closer than this are one plane [rad]
+   real(wp), parameter :: opposite = -0.9998_wp   !! cosine of a turn that only a crack tip has
 
    !> What the sweeps read of a boundary node; small, so that it stays in the cache.
    type :: motion_type
@@ -83,7 +84,9 @@ contains
    end subroutine edge_pair
 
    !> Behind edge `j` but less far behind the next face round a convex corner: then the node is
-   !> outside through that face and does not violate edge `j`.
+   !> outside through that face and does not violate edge `j`. Where the next face runs back the way
+   !> of this one there is no corner but the tip of a crack: closed faces may cross by rounding, and
+   !> whoever stands before one of them stands behind the other.
    pure function is_outside_neighbour(surfaces, i, j, gap) result(is_outside)
       type(surfaces_type), intent(in) :: surfaces
       integer, intent(in) :: i
@@ -100,6 +103,7 @@ contains
          if (edge == i .or. surfaces%next(edge) == i) cycle
          associate (t => surfaces%tangent(:, j), s => surfaces%tangent(:, edge))
             if ((s(1)*t(2) - s(2)*t(1))*merge(1, -1, side == 1) <= 0.0_wp) cycle
+            if (s(1)*t(1) + s(2)*t(2) < opposite) cycle
             if (across(offset(surfaces, i, edge), s) > gap) return
          end associate
       end do

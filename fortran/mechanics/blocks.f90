@@ -20,6 +20,7 @@ module lithofrac_mechanics_blocks
       integer, allocatable :: first_chunk(:)     !! (n_blocks + 1)
       integer, allocatable :: place(:, :, :)     !! (width, 3, n_chunks) place of a corner
       real(wp), allocatable :: buffer(:, :)      !! (2, places) element forces [N], 0 between steps
+      real(wp), allocatable :: chord(:)          !! (n_blocks) `chord_work` of the step [J]
       integer :: n_runs = 0                      !! runs of nodes of one body
       integer, allocatable :: first_node(:)      !! (n_runs + 1)
       integer, allocatable :: first_shared(:)    !! (n_runs + 1) into `shared`
@@ -44,6 +45,7 @@ contains
       end do
       call find_places(blocks, chunks, mesh%n_nodes, shared)
       allocate (blocks%buffer(2, mesh%n_nodes + size(shared, 2)), source=0.0_wp)
+      allocate (blocks%chord(blocks%n_blocks), source=0.0_wp)
       call cut_runs(blocks, mesh)
       call sort_shared(blocks, shared)
    end subroutine new_blocks

@@ -14,7 +14,7 @@ module lithofrac_mechanics_kinematics
    implicit none
    private
 
-   public :: elastic_stress, gather, gather_previous, hoop_strain, nodal_forces
+   public :: area_ratios, elastic_stress, gather, gather_previous, hoop_strain, nodal_forces
    public :: scatter, scatter_hoop, strains, virgin_forces
 
 contains
@@ -67,6 +67,24 @@ contains
             rotation(i, 1), rotation(i, 2), rotation(i, 3))
       end do
    end subroutine strains
+
+   !> det F: area of now over that of the reference.
+   pure subroutine area_ratios(gradient, du, ratio)
+      real(wp), intent(in) :: gradient(width, 4)    !! of the shape functions [1/m]
+      real(wp), intent(in) :: du(width, 4)          !! [m]
+      real(wp), intent(out) :: ratio(width)
+
+      integer :: i
+      real(wp) :: h11, h12, h21, h22
+
+      do i = 1, width
+         h11 = du(i, 1)*gradient(i, 1) + du(i, 3)*gradient(i, 3)
+         h12 = du(i, 1)*gradient(i, 2) + du(i, 3)*gradient(i, 4)
+         h21 = du(i, 2)*gradient(i, 1) + du(i, 4)*gradient(i, 3)
+         h22 = du(i, 2)*gradient(i, 2) + du(i, 4)*gradient(i, 4)
+         ratio(i) = (1.0_wp + h11)*(1.0_wp + h22) - h12*h21
+      end do
+   end subroutine area_ratios
 
    !> Hoop strain of axisymmetry, from the mean radius of the element (no lock-up at the axis).
    pure subroutine hoop_strain(node, u, hoop, strain_zz)

@@ -130,6 +130,8 @@ contains
       call visitor%visit_scalar(model%ledger%insertion)
       call visitor%visit_scalar(model%ledger%relump)
       call visitor%visit_scalar(model%ledger%reset)
+      call visitor%visit_scalar(model%ledger%turning)
+      call visitor%visit_count(model%fast_until)
       call visitor%visit_scalar(model%ledger%scale)
       do i = 1, size(model%velocities)
          call visitor%visit(size(model%velocities(i)%before), model%velocities(i)%before)

@@ -230,7 +230,8 @@ contains
 
       select case (code)
       case (prescribed_collision)
-         what = "contact: their prescribed motions collide"
+         what = "contact: their prescribed motions collide; " &
+            //"try a smaller end strain, or leave one of them free"
       case (too_fast)
          what = "contact: they pass each other too fast for the step; " &
             //"try a smaller time_step_factor or loading speed"

@@ -2,7 +2,8 @@
 !>
 !> Inside: elastic energy of the elements and what they dissipated. Outside: work of the
 !> boundary, of contact, of fading bonds and of damping at the nodes, and the kinetic energy of the
-!> leap-frog. Their difference is the residual; nothing is defined as the missing term.
+!> leap-frog. Their difference is the residual; nothing is defined as the missing term. What the
+!> leap-frog itself gains or loses as elements turn is known in closed form and has its own entry.
 module lithofrac_run_energy
    use lithofrac_base_kinds, only: wp
    implicit none
@@ -10,7 +11,7 @@ module lithofrac_run_energy
 
    public :: ledger_type, n_ledger, pack_ledger, residual
 
-   integer, parameter :: n_ledger = 13  !! entries of `pack_ledger`
+   integer, parameter :: n_ledger = 14  !! entries of `pack_ledger`
 
    type :: ledger_type
       real(wp) :: initial = 0.0_wp      !! kinetic and elastic at the start [J]
@@ -24,6 +25,7 @@ module lithofrac_run_energy
       real(wp) :: friction = 0.0_wp     !! work of friction, negative when it takes energy [J]
       real(wp) :: insertion = 0.0_wp    !! work of fading bonds, negative when they take energy [J]
       real(wp) :: relump = 0.0_wp       !! kinetic energy lost as mass went to new nodes [J], <= 0
+      real(wp) :: turning = 0.0_wp      !! given by elements that turn along chords [J]
       real(wp) :: reset = 0.0_wp        !! fracture energy to spend again; not in the balance [J]
       real(wp) :: scale = 0.0_wp        !! largest internal energy so far [J]
    end type ledger_type
@@ -40,19 +42,20 @@ contains
       scale = max(abs(ledger%external), abs(ledger%initial), ledger%scale)
       residual = ledger%kinetic + ledger%elastic + ledger%compressive + ledger%fracture &
          - ledger%initial - ledger%external - ledger%damping - ledger%contact - ledger%friction &
-         - ledger%insertion - ledger%relump
+         - ledger%insertion - ledger%relump - ledger%turning
       if (scale > 0.0_wp) residual = residual/scale
    end function residual
 
    !> kinetic, elastic, compressive, fracture, external, damping, residual, initial, contact,
-   !> friction, insertion, relump, reset.
+   !> friction, insertion, relump, reset, turning.
    pure function pack_ledger(ledger) result(values)
       type(ledger_type), intent(in) :: ledger
       real(wp) :: values(n_ledger)
 
       values = [ledger%kinetic, ledger%elastic, ledger%compressive, ledger%fracture, &
          ledger%external, ledger%damping, residual(ledger), ledger%initial, &
-         ledger%contact, ledger%friction, ledger%insertion, ledger%relump, ledger%reset]
+         ledger%contact, ledger%friction, ledger%insertion, ledger%relump, ledger%reset, &
+         ledger%turning]
    end function pack_ledger
 
 end module lithofrac_run_energy

@@ -4,15 +4,14 @@
 !> velocity of the half step after it. The next call starts by moving the nodes.
 module lithofrac_run_step
    use lithofrac_base_kinds, only: wp
-   use lithofrac_base_status, only: bad_element, bad_input, no_return_map, not_finite, ok, &
-      set_failure, status_type
+   use lithofrac_base_status, only: bad_input, no_return_map, ok, set_failure, status_type
    use lithofrac_contact_overlap, only: refuse_overlap
    use lithofrac_fracture_bonds, only: apply_bonds, bond_power, forget_bonds
    use lithofrac_fracture_fragment_drag, only: apply_drag, drag_power
    use lithofrac_mechanics_blocks, only: assemble
    use lithofrac_mechanics_internal_force, only: chunk_force, failure_type
    use lithofrac_mechanics_loads, only: apply_pressure, apply_velocity, work_after, work_before
-   use lithofrac_mesh_mesh, only: triangle_area
+   use lithofrac_mechanics_turns, only: chord_work, look, stretch_type
    use lithofrac_run_contact_step, only: bring_masses, book_contact, close_contacts, &
       note_velocities
    use lithofrac_run_damping, only: fit_affine, rayleigh_frequency
@@ -22,6 +21,7 @@ module lithofrac_run_step
       update_plain
    use lithofrac_run_observe, only: internal_energy, kinetic_energy
    use lithofrac_run_settings, only: no_damping, relative_to_affine
+   use lithofrac_run_watch, only: check_state
    implicit none
    private
 
@@ -29,6 +29,8 @@ module lithofrac_run_step
 
    integer, parameter :: quotient_interval = 100      !! steps between Rayleigh quotients
    integer, parameter :: quotient_length = 10         !! steps that a quotient looks at
+   integer, parameter :: look_interval = 10           !! steps between looks at the speed
+   integer, parameter :: booked_steps = 100           !! after a fast one
    real(wp), parameter :: largest_alpha_dt = 0.05_wp  !! keeps the lagged drag stable
 
 contains
@@ -69,8 +71,9 @@ contains
          if (status%code /= ok) return
       end if
       model%started = .true.
+      model%fast_until = booked_steps
       model%ledger%initial = kinetic_energy(model) + sum(internal_energy(model))
-      call check_finite(model, status)
+      call check_state(model, status)
    end subroutine start
 
    !> Take `n_steps` steps.
@@ -138,23 +141,35 @@ contains
       !$omp end parallel
       call report_failure(model, failures, status)
       if (status%code == ok) status = contact_status
-      if (status%code == ok) call check_finite(model, status)
-      if (status%code == ok) call check_areas(model, status)
+      if (status%code == ok) call check_state(model, status)
    end subroutine advance
 
-   !> Element forces of one block of chunks.
+   !> Element forces of one block of chunks; in fast motion also the work of their turns.
    subroutine block_force(model, block, failure)
       type(model_type), intent(inout) :: model
       integer, intent(in) :: block
       type(failure_type), intent(inout) :: failure
 
+      type(stretch_type) :: before, after
+      logical :: is_fast
       integer :: chunk
 
-      do chunk = model%blocks%first_chunk(block), model%blocks%first_chunk(block + 1) - 1
-         call chunk_force(model%chunks, chunk, model%rocks(model%chunks%body(chunk)), &
-            model%fields, merge(model%dt, 0.0_wp, model%started), model%state, &
-            model%blocks%place(:, :, chunk), model%blocks%buffer, failure)
-      end do
+      is_fast = model%step <= model%fast_until
+      associate (blocks => model%blocks, chunks => model%chunks)
+         blocks%chord(block) = 0.0_wp
+         do chunk = blocks%first_chunk(block), blocks%first_chunk(block + 1) - 1
+            associate (rock => model%rocks(chunks%body(chunk)))
+               if (is_fast) call look(chunks, chunk, rock, model%fields, model%state, model%dt, &
+                  before)
+               call chunk_force(chunks, chunk, rock, model%fields, merge(model%dt, 0.0_wp, &
+                  model%started), model%state, blocks%place(:, :, chunk), blocks%buffer, failure)
+               if (.not. is_fast) cycle
+               call look(chunks, chunk, rock, model%fields, model%state, 0.0_wp, after)
+               blocks%chord(block) = blocks%chord(block) + chord_work(chunks%volume(:, chunk), &
+                  before, after)
+            end associate
+         end do
+      end associate
    end subroutine block_force
 
    !> Book the step that ends, then set the boundary and the damping of the next.
@@ -169,7 +184,9 @@ contains
          if (model%step > 0) ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(2, :))
          ledger%damping = ledger%damping + 0.5_wp*dt*sum(model%sums(3, :))
          if (model%fracture%on) call book_fracture(model)
+         ledger%turning = ledger%turning - sum(model%blocks%chord)
       end associate
+      call look_for_speed(model)
       if (model%contact%on) then
          call book_contact(model)
          call note_velocities(model)
@@ -178,6 +195,24 @@ contains
       call load_boundary(model)
       call set_damping(model)
    end subroutine finish_step
+
+   !> Book turns for some time from a step that is fast: a body that rings stands still twice in
+   !> a period. The first steps are booked in any case.
+   subroutine look_for_speed(model)
+      type(model_type), intent(inout) :: model
+
+      real(wp) :: energy
+      integer :: node
+
+      if (mod(model%step, look_interval) /= 0) return
+      energy = 0.0_wp
+      associate (mass => model%fields%mass, v => model%fields%v)
+         do node = 1, model%mesh%n_nodes
+            energy = energy + 0.5_wp*mass(node)*(v(1, node)*v(1, node) + v(2, node)*v(2, node))
+         end do
+      end associate
+      if (energy > model%fast_energy) model%fast_until = model%step + booked_steps
+   end subroutine look_for_speed
 
    subroutine load_boundary(model)
       type(model_type), intent(inout) :: model
@@ -340,7 +375,7 @@ contains
 
       associate (surfaces => model%contact%surfaces)
          surfaces%u = model%fields%u(:, surfaces%node)
-         call refuse_overlap(surfaces, model%mesh, status)
+         call refuse_overlap(surfaces, model%mesh, model%origin, status)
       end associate
       if (status%code /= ok) return
       call bring_masses(model)
@@ -357,59 +392,17 @@ contains
       type(status_type), intent(out) :: status
 
       integer :: block
-      character(len=200) :: words
+      character(len=240) :: words
 
       do block = 1, size(failures)
          if (failures(block)%code == ok) cycle
          write (words, "(a, i0, a, es12.4e3, a, i0, a, 4es12.3e3, a)") "step ", model%step, &
             ", time ", model%step*model%dt, " s, element ", failures(block)%element, &
             ": no consistent return of the trial stress", failures(block)%trial*1.0e-6_wp, &
-            " MPa (xx, yy, zz, xy)"
+            " MPa (xx, yy, zz, xy); try a smaller time_step_factor or loading speed"
          call set_failure(status, no_return_map, trim(words))
          return
       end do
    end subroutine report_failure
-
-   !> No element may turn inside out: its answer would be smooth and wrong.
-   subroutine check_areas(model, status)
-      type(model_type), intent(in) :: model
-      type(status_type), intent(out) :: status
-
-      character(len=200) :: words
-      real(wp) :: x(2, 3)
-      integer :: element
-
-      do element = 1, model%mesh%n_elements
-         if (model%fracture%on) then
-            if (.not. model%fracture%topology%alive(element)) cycle
-         end if
-         associate (corner => model%mesh%triangles(:, element))
-            x = model%mesh%nodes(:, corner) + model%fields%u(:, corner)
-         end associate
-         if (triangle_area(x(:, 1), x(:, 2), x(:, 3)) > 0.0_wp) cycle
-         write (words, "(a, i0, a, es12.4e3, a, i0, a)") "step ", model%step, ", time ", &
-            model%step*model%dt, " s, element ", element, &
-            ": it has turned inside out; try a finer mesh, a slower load or a smaller end strain"
-         call set_failure(status, bad_element, trim(words))
-         return
-      end do
-   end subroutine check_areas
-
-   subroutine check_finite(model, status)
-      type(model_type), intent(in) :: model
-      type(status_type), intent(out) :: status
-
-      character(len=160) :: words
-      integer :: node
-
-      if (abs(sum(model%sums(1, :))) <= huge(1.0_wp)) return
-      do node = 1, model%mesh%n_nodes
-         if (.not. all(abs(model%fields%v(:, node)) <= huge(1.0_wp))) exit
-      end do
-      write (words, "(a, i0, a, es12.4e3, a, i0, a)") "step ", model%step, ", time ", &
-         model%step*model%dt, " s, node ", min(node, model%mesh%n_nodes), &
-         ": velocity is not finite; try a smaller time_step_factor or loading speed"
-      call set_failure(status, not_finite, trim(words))
-   end subroutine check_finite
 
 end module lithofrac_run_step

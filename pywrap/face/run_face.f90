@@ -15,6 +15,7 @@ module run_face
    use lithofrac_run_observe, only: element_state, energy_now, load_records
    use lithofrac_run_settings, only: settings_type
    use lithofrac_run_step, only: advance
+   use lithofrac_run_watch, only: look, sight_type
    implicit none
    private
 
@@ -22,7 +23,7 @@ module run_face
    public :: run_advance, run_clock, run_energy, run_loads, run_elements, run_nodes
    public :: run_add_contact, run_tag_surface, run_contact_forces, run_contact_statistics
    public :: run_add_fracture, run_sizes, run_mesh, run_parts, run_failure, run_cracks, run_check
-   public :: run_checkpoint_size, run_save, run_restore
+   public :: run_checkpoint_size, run_save, run_restore, run_watch
 
    integer, parameter :: max_runs = 64
 
@@ -238,10 +239,10 @@ contains
    end subroutine run_clock
 
    !> The ledger: kinetic, elastic, compressive, fracture, external, damping [J], residual
-   !> (relative), initial, contact, friction, insertion, relump, reset [J].
+   !> (relative), initial, contact, friction, insertion, relump, reset, turning [J].
    subroutine run_energy(run, values, code, message)
       integer(c_int), intent(in) :: run
-      real(c_double), intent(out) :: values(13)
+      real(c_double), intent(out) :: values(14)
       integer(c_int), intent(out) :: code
       character(len=256), intent(out) :: message
 
@@ -253,6 +254,27 @@ contains
       call energy_now(slots(run)%model, ledger)
       values = pack_ledger(ledger)
    end subroutine run_energy
+
+   !> What the guards look at: smallest area, largest speed, smallest step, deepest overlap. Places:
+   !> element, node, element, then node and element of the overlap, bad node, bad element.
+   subroutine run_watch(run, values, places, code, message)
+      integer(c_int), intent(in) :: run
+      real(c_double), intent(out) :: values(4)         !! all relative, see `sight_type`
+      integer(c_int), intent(out) :: places(7)         !! 0: none
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      type(sight_type) :: sight
+
+      values = 0.0_c_double
+      places = 0
+      call check_handle(run, code, message)
+      if (code /= ok) return
+      call look(slots(run)%model, sight)
+      values = [sight%area, sight%speed, sight%step, sight%overlap]
+      places = [sight%area_element, sight%speed_node, sight%step_element, sight%overlap_node, &
+         sight%overlap_element, sight%bad_node, sight%bad_element]
+   end subroutine run_watch
 
    !> Force [N] and displacement [m] of every load: velocities first, then pressures.
    subroutine run_loads(run, n, records, code, message)
@@ -337,7 +359,7 @@ contains
       call check_handle(run, code, message)
       if (code /= ok) return
       associate (model => slots(run)%model)
-         nodes = model%mesh%nodes(:, :n_nodes)
+         nodes = model%mesh%nodes(:, :n_nodes) + spread(model%origin, 2, n_nodes)
          triangles = model%mesh%triangles(:, :n_elements)
          body = model%mesh%body(:n_elements)
          if (model%fracture%on) alive = merge(1, 0, model%fracture%topology%alive(:n_elements))
@@ -388,7 +410,12 @@ contains
 
       record = 0.0_c_double
       call check_handle(run, code, message)
-      if (code == ok .and. n_edges > 0) record = slots(run)%model%fracture%record(:, :n_edges)
+      if (code /= ok .or. n_edges == 0) return
+      record = slots(run)%model%fracture%record(:, :n_edges)
+      associate (origin => slots(run)%model%origin)
+         record(3:4, :) = record(3:4, :) + spread(origin, 2, n_edges)
+         record(5:6, :) = record(5:6, :) + spread(origin, 2, n_edges)
+      end associate
    end subroutine run_cracks
 
    !> Fail in words where an invariant of a mesh that cracks is broken.

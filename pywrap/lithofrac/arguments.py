@@ -54,6 +54,7 @@ def parser() -> argparse.ArgumentParser:
         _fit,
         _compare,
         _references,
+        _stability,
     ):
         add(commands)
     return found
@@ -108,7 +109,12 @@ def _run(commands) -> None:
     one.add_argument(
         "--threads", type=_threads, default=1, metavar="N", help="results are the same bits"
     )
-    one.add_argument("--resume", action="store_true", help="go on from the checkpoint in DIR")
+    start = one.add_mutually_exclusive_group()
+    start.add_argument("--resume", action="store_true", help="go on from the checkpoint in DIR")
+    start.add_argument(
+        "--resume-if-possible", action="store_true",
+        help="the same if a run of this very case and build was stopped there, else start anew",
+    )  # fmt: skip
     one.add_argument("--quiet", action="store_true", help="print errors only")
     _source_of_case(one)
 
@@ -129,7 +135,9 @@ def _study(commands) -> None:
     one.add_argument(
         "--out", type=_path, metavar="DIR", help="results folder; none: check and list the runs"
     )
-    one.add_argument("--cores", type=_threads, metavar="N", help="runs at a time, default all")
+    where = one.add_mutually_exclusive_group()
+    where.add_argument("--cores", type=_threads, metavar="N", help="runs at a time, default all")
+    where.add_argument("--profile", metavar="DIR", help="run on a cluster: slurm, pbs or a folder")
     one.add_argument("--quiet", action="store_true", help="print errors only")
 
 
@@ -256,6 +264,19 @@ def _references(commands) -> None:
         "--twin", type=Path, nargs="+", required=True, metavar="RUN", help="runs of a native build"
     )
     one.add_argument("--why", required=True, metavar="TEXT", help="reason, kept with the numbers")
+
+
+def _stability(commands) -> None:
+    one = _command(
+        commands, "stability", "try the extremes of the model", "--only density --out out/tables"
+    )
+    one.add_argument("--out", type=_path, required=True, metavar="DIR", help="folder of the tables")
+    one.add_argument(
+        "--only", nargs="+", default=[], metavar="FAMILY", help="an unknown word lists all"
+    )
+    one.add_argument(
+        "--processes", type=_threads, default=os.cpu_count() or 1, metavar="N", help="default: all"
+    )
 
 
 def _finished_runs(one: argparse.ArgumentParser) -> None:

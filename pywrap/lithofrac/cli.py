@@ -1,7 +1,7 @@
 """The command line: `lithofrac check | mesh | run | plot | report | ...`.
 
-Exit codes: 0 good, 2 bad input, 3 numerical failure, 4 numbers moved, 130 interrupted. Heavy
-modules are imported by the command that needs them.
+Exit codes: 0 good, 2 bad input or a folder that cannot be written, 3 numerical failure, 4 numbers
+moved, 130 interrupted. Heavy modules are imported by the command that needs them.
 """
 
 from __future__ import annotations
@@ -10,11 +10,13 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithofrac.arguments import parser
-from lithofrac.intake import accepted, case_of, find_checkpoint, made_of, mesh_of, prepare
+from lithofrac.intake import accepted, case_of, made_of, mesh_of, prepare, resumed, warn, way_on
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -22,18 +24,24 @@ if TYPE_CHECKING:
     from lithofrac.config import Case
 
 GOOD, BAD_INPUT, NUMERICAL_FAILURE, MOVED, INTERRUPTED = 0, 2, 3, 4, 130
+BAD_INPUT_ERRORS = {"DataError", "CheckpointError", "FileError", "FolderInUseError"}
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run one command; returns its exit code."""
+    with suppress(AttributeError):  # a title may hold letters that the locale lacks
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         try:
             return _one_command(arguments)
         finally:
             sys.stdout.flush()  # not when Python ends, where a closed pipe is an error
-    except BrokenPipeError:  # `lithofrac check | head`
+    except OSError as error:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return GOOD
+        if isinstance(error, BrokenPipeError):  # `lithofrac check | head`
+            return GOOD
+        _complain(str(error))  # a full disk below the output
+        return BAD_INPUT
 
 
 def _one_command(arguments: list[str] | None) -> int:
@@ -41,7 +49,7 @@ def _one_command(arguments: list[str] | None) -> int:
     try:
         return COMMANDS[options.command](options)
     except KeyboardInterrupt:
-        print("lithofrac: interrupted", file=sys.stderr)
+        _complain("interrupted")
         return INTERRUPTED
     except BrokenPipeError:
         raise
@@ -49,9 +57,17 @@ def _one_command(arguments: list[str] | None) -> int:
         code = _exit_code(error)
         if code is None:
             raise
-        for line in str(error).splitlines():
-            print(f"lithofrac: {line}", file=sys.stderr)
+        from lithofrac.config.errors import printable
+
+        for line in (str(error) or "not enough memory").split("\n"):
+            _complain(printable(line))
         return code
+
+
+def _complain(sentence: str) -> None:
+    """Say what is wrong, unless nobody can be told."""
+    with suppress(OSError):
+        print(f"lithofrac: {sentence}", file=sys.stderr, flush=True)
 
 
 def _exit_code(error: Exception) -> int | None:
@@ -59,7 +75,7 @@ def _exit_code(error: Exception) -> int | None:
     from lithofrac.config import ConfigError
 
     names = {base.__name__ for base in type(error).__mro__}
-    if isinstance(error, (ConfigError, OSError)) or names & {"DataError", "CheckpointError"}:
+    if isinstance(error, (ConfigError, OSError, MemoryError)) or names & BAD_INPUT_ERRORS:
         return BAD_INPUT
     return NUMERICAL_FAILURE if names & {"CoreError", "MeshError"} else None
 
@@ -80,7 +96,9 @@ def check(options: Namespace) -> int:
 
     names = options.case or list(load_suite(options.suite or default_suite()).names)
     if len(names) == 1:
-        _print_plan(names[0], case_of(names[0], options))
+        case = case_of(names[0], options)
+        _print_plan(names[0], case)
+        warn(names[0], case)
         return GOOD
     for name in names:
         print(f"{name}: {case_of(name, options).title}")
@@ -90,48 +108,62 @@ def check(options: Namespace) -> int:
 
 def mesh(options: Namespace) -> int:
     """Mesh a case and save it."""
+    from lithofrac.config import ConfigError
+    from lithofrac.results.files import write_whole
+
+    if options.out.exists() and not options.out.is_file():
+        raise ConfigError(f"--out {options.out}: is no regular file, expected a file to write")
     made = made_of(options.case, case_of(options.case, options), options.seed)
     options.out.parent.mkdir(parents=True, exist_ok=True)
-    with open(options.out, "wb") as file:  # a handle, so that no suffix is added
-        made.save(file)
+    write_whole(options.out, made.save)
     print(f"{options.out}: {len(made.triangles)} elements, {len(made.nodes)} nodes")
     return GOOD
 
 
 def run(options: Namespace) -> int:
     """Run a case into its results folder."""
+    from lithofrac.config import ConfigError
     from lithofrac.progress import Progress
     from lithofrac.run import simulate
 
+    out = options.out
     case = case_of(options.case, options)
     made = mesh_of(case, options)
     problem, _ = accepted(options.case, case, made)
-    if options.resume:
-        find_checkpoint(options.out, problem)
+    resume, notes = resumed(options, problem)
+    for note in notes:
+        _complain(note)
     name = Path(options.case).stem if options.case.endswith((".yaml", ".yml")) else options.case
-    prepare(options, case, made)
+    warnings = warn(name, case, quiet=options.quiet)
     progress = Progress(name)
     before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
     try:
         summary = simulate(
             problem,
-            options.out,
+            out,
             threads=options.threads,
-            resume=options.resume,
+            resume=resume,
             progress=None if options.quiet else progress,
-            meta={"case": name, "title": case.title, "commit": _commit()},
+            warn=None if options.quiet else progress.warn,
+            meta={
+                "case": name,
+                "title": case.title,
+                "commit": _commit(),
+                "input_warnings": warnings,
+            },
+            prepare=None if resume else partial(prepare, out, Path(options.case), case, made),
         )
     except KeyboardInterrupt:
-        print(
-            f"lithofrac: interrupted; the same command with --resume goes on from {options.out}",
-            file=sys.stderr,
-        )
+        _complain(f"interrupted{way_on(out)}")
         return INTERRUPTED
+    except OSError as error:
+        why = os.strerror(error.errno) if error.errno else " ".join(str(error).split())
+        raise ConfigError(f"--out {out}: cannot be written ({why}){way_on(out)}") from None
     finally:
         progress.close()
         signal.signal(signal.SIGTERM, before)
     if not options.quiet:
-        _print_summary(name, summary, options.out)
+        _print_summary(name, summary, out)
     return GOOD
 
 
@@ -156,7 +188,7 @@ def study(options: Namespace) -> int:
         return GOOD
     before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
     try:
-        start(options.file, texts, options.out, options.cores, options.quiet)
+        start(options.file, texts, options.out, options.cores, options.quiet, options.profile)
     finally:
         signal.signal(signal.SIGTERM, before)
     if not options.quiet:
@@ -262,6 +294,16 @@ def references(options: Namespace) -> int:
     return GOOD
 
 
+def stability(options: Namespace) -> int:
+    """Try the extremes of the model; says which cells of the matrix are not as they should be."""
+    from lithofrac.stability.matrix import make_matrix
+
+    bad = make_matrix(options.out, options.only, options.processes)
+    for line in bad:
+        print(f"lithofrac: {line}", file=sys.stderr)
+    return NUMERICAL_FAILURE if bad else GOOD
+
+
 COMMANDS = {
     "init": init,
     "check": check,
@@ -276,6 +318,7 @@ COMMANDS = {
     "fit": fit,
     "compare": compare,
     "references": references,
+    "stability": stability,
 }
 
 

@@ -32,6 +32,7 @@ _set_motion = checked(_face.run_set_motion)
 _advance = checked(_face.run_advance)
 _clock = checked(_face.run_clock)
 _energy = checked(_face.run_energy)
+_watch = checked(_face.run_watch)
 _loads = checked(_face.run_loads)
 _elements = checked(_face.run_elements)
 _nodes = checked(_face.run_nodes)
@@ -65,6 +66,7 @@ class Energy:
     insertion: float  # work of the bonds that fade on new cracks
     relump: float  # kinetic energy lost as mass went to new nodes, <= 0
     reset: float  # fracture energy that elements may spend again; not part of the balance
+    turning: float  # given by elements that turn along chords: what the step itself gains
 
     @property
     def internal(self) -> float:
@@ -101,6 +103,23 @@ class Sizes:
     closed: int  # failed nodes that had no way for a crack when they were looked at
     most_resets: int  # of one element
     contact_pairs: int  # of now
+
+
+@dataclass(frozen=True)
+class Sight:
+    """What the guards look at, all relative; places are indices, -1 where there is none."""
+
+    area: float  # smallest area of an element, over that in the reference
+    speed: float  # largest of a node, over the P wave speed of its body
+    step: float  # critical step of the smallest piece, over that of the mesh at the start
+    overlap: float  # depth of a boundary node in an element, over the shortest boundary edge
+    area_element: int
+    speed_node: int
+    step_element: int
+    overlap_node: int
+    overlap_element: int
+    bad_node: int  # first one with a value that is not finite; nothing else is looked at then
+    bad_element: int  # likewise
 
 
 @dataclass(frozen=True)
@@ -209,6 +228,11 @@ class Run:
     def energy(self) -> Energy:
         """The ledger at the time of the fields."""
         return Energy(*map(float, _energy(self._handle)))
+
+    def watch(self) -> Sight:
+        """What the guards look at; takes the time of a small part of a step."""
+        values, places = _watch(self._handle)
+        return Sight(*values.tolist(), *(places - 1).tolist())
 
     def loads(self) -> np.ndarray:
         """Force [N] and displacement [m] of every load, (n, 2): velocities, then pressures.

@@ -6,6 +6,7 @@ Heavy modules are imported by the function that needs them.
 from __future__ import annotations
 
 import shutil
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,6 +27,16 @@ def case_of(name: str, options: Namespace) -> Case:
     return find_case(name, options.suite, settings(options.set))
 
 
+def warn(name: str, case: Case, quiet: bool = False) -> list[str]:
+    """Print and return what is doubtful about a case."""
+    from lithofrac.config.doubts import doubts
+
+    found = doubts(case)
+    for sentence in [] if quiet else found:
+        print(f"lithofrac: warning: {name}: {sentence}", file=sys.stderr)
+    return found
+
+
 def mesh_of(case: Case, options: Namespace) -> Mesh:
     """Mesh of the folder that is resumed, of the file that is named, or a new one."""
     from lithofrac.config import ConfigError
@@ -36,10 +47,7 @@ def mesh_of(case: Case, options: Namespace) -> Mesh:
         return made_of(options.case, case)
     if options.resume and not path.exists():
         raise ConfigError(f"{path}: no such file, there is no run to resume in {options.out}")
-    try:
-        return Mesh.load(path)
-    except (ValueError, KeyError, EOFError) as error:
-        raise ConfigError(f"{path}: expected a mesh of `lithofrac mesh` ({error})") from None
+    return Mesh.load(path)
 
 
 def made_of(name: str, case: Case, seed: int | None = None) -> Mesh:
@@ -72,43 +80,70 @@ def accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
             f"{name}: loading.{key} = {getattr(case.loading, key):g}: the run takes "
             f"{expected['steps']:.3g} steps, expected at most {MOST_STEPS}"
         )
+    elements, steps = expected["elements"], expected["steps"]
+    if elements * steps > case.budget_element_steps:
+        raise ConfigError(
+            f"{name}: budget_element_steps = {case.budget_element_steps:g}: the run takes "
+            f"{elements} elements times {steps} steps, {elements * steps:.3g}"
+        )
     return problem, expected
 
 
-def find_checkpoint(out: Path, problem: Problem) -> None:
-    """Refuse to resume before anything is written when no checkpoint fits."""
+def resumed(options: Namespace, problem: Problem) -> tuple[bool, list[str]]:
+    """Whether the run goes on from a checkpoint, and sentences on what is odd about that.
+
+    Raises
+    ------
+    CheckpointError
+        If `--resume` finds nothing to go on from; nothing has been written then.
+    """
     from lithofrac.errors import CheckpointError, CoreError
     from lithofrac.results import checkpoint
 
+    if not (options.resume or options.resume_if_possible):
+        return False, []
     try:
-        checkpoint.read(out, checkpoint.fingerprint(problem))
+        found = checkpoint.read(options.out, checkpoint.fingerprint(problem))
     except CoreError as error:
-        raise CheckpointError(f"--resume: {error}") from None
+        if options.resume:
+            raise CheckpointError(f"--resume: {error}") from None
+        found = None
+    if options.resume or (found and found.same_build and not found.arrays["finished"]):
+        return True, [f"{note}; going on from {found.path.name}" for note in found.notes]
+    anew = f"{options.out}: its checkpoint is not of this run, starting anew"
+    return False, [anew] if way_on(options.out) else []
 
 
-def prepare(options: Namespace, case: Case, mesh: Mesh) -> None:
-    """Make the results folder; what an earlier run left there goes, unless it is resumed."""
+def way_on(out: Path) -> str:
+    """End of a sentence on a run that was stopped: how it goes on, if it can."""
+    from lithofrac.results import checkpoint
+
+    if any((out / name).exists() for name in (checkpoint.NAME, checkpoint.PREVIOUS)):
+        return f"; the same command with --resume goes on from {out}"
+    return ""
+
+
+def prepare(out: Path, named: Path, case: Case, mesh: Mesh) -> None:
+    """Delete what an earlier run left, half files of a killed one too, and save the input.
+
+    Parameters
+    ----------
+    named : the case as the user names it, perhaps a file
+    """
     from lithofrac.config import ConfigError
     from lithofrac.config.setting import kept, text_of
-    from lithofrac.results.files import OWN_FILES, write_whole
+    from lithofrac.results.files import OWN_FILES, part_of, write_text, write_whole
 
-    out, named = options.out, Path(options.case)
     copy, (case, beside) = out / "case.yaml", kept(case)
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        if options.resume:
-            return
-        if copy.exists() and named.exists() and copy.samefile(named):
-            raise ConfigError(f"--out {out}: the run would replace its case file {named}")
-        for geometry, source in beside.items():
-            if (out / geometry).exists() and source.samefile(out / geometry):
-                raise ConfigError(f"--out {out}: the run would replace its geometry {source}")
-        for pattern in OWN_FILES:
-            for path in out.glob(pattern):
-                path.unlink()
-        write_whole(out / "mesh.npz", mesh.save)
-        write_whole(copy, lambda part: part.write_text(text_of(case)))
-        for geometry, source in beside.items():
-            write_whole(out / geometry, lambda part, source=source: shutil.copyfile(source, part))
-    except OSError as error:
-        raise ConfigError(f"--out {out}: cannot be written ({error.strerror})") from None
+    if copy.exists() and named.exists() and copy.samefile(named):
+        raise ConfigError(f"--out {out}: the run would replace its case file {named}")
+    for geometry, source in beside.items():
+        if (out / geometry).exists() and source.samefile(out / geometry):
+            raise ConfigError(f"--out {out}: the run would replace its geometry {source}")
+    for pattern in OWN_FILES:
+        for path in (*out.glob(pattern), *out.glob(str(part_of(Path(pattern))))):
+            path.unlink()
+    write_whole(out / "mesh.npz", mesh.save)
+    write_text(copy, text_of(case))
+    for geometry, source in beside.items():
+        write_whole(out / geometry, lambda part, source=source: shutil.copyfile(source, part))

@@ -1,7 +1,7 @@
 """What a run is made of, in SI units: mesh, boundary sets, loads, probes.
 
 A scene turns a checked case into a `Problem`; `lithofrac.run` steps it in the Fortran core.
-Nothing here reads files, and nothing here knows of config keys.
+Nothing here knows of config keys.
 """
 
 from __future__ import annotations
@@ -10,6 +10,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+
+from lithofrac.errors import FileError
+from lithofrac.mesh_flaws import flaw
+from lithofrac.npz import arrays_of
+
+EXPECTED = "a mesh of `lithofrac mesh`"
 
 
 @dataclass(frozen=True)
@@ -48,24 +54,46 @@ class Mesh:
     def save(self, path: Path) -> None:
         """Write to an .npz without pickled objects."""
         sets = {f"edges:{name}": edges for name, edges in self.edge_sets.items()}
-        np.savez(
-            path,
-            nodes=self.nodes,
-            triangles=self.triangles,
-            body=self.body,
-            body_names=np.array(self.body_names),
-            **sets,
-        )
+        with open(path, "wb") as file:  # a handle, so that no suffix is added
+            np.savez(
+                file,
+                nodes=self.nodes,
+                triangles=self.triangles,
+                body=self.body,
+                body_names=np.array(self.body_names),
+                **sets,
+            )
 
     @classmethod
     def load(cls, path: Path) -> Mesh:
-        """Read what `save` wrote; no code in the file is run."""
-        with np.load(path, allow_pickle=False) as file:
-            sets = {
-                key.removeprefix("edges:"): file[key] for key in file if key.startswith("edges:")
-            }
-            names = tuple(str(name) for name in file["body_names"])
-            return cls(file["nodes"], file["triangles"], file["body"], names, sets)
+        """Read what `save` wrote; no code in the file is run.
+
+        Raises
+        ------
+        FileError
+            Where the file is no mesh, or its mesh has a flaw.
+        """
+        arrays = arrays_of(path, EXPECTED)
+        missing = {"nodes", "triangles", "body", "body_names"} - set(arrays)
+        if missing:
+            raise FileError(f"{path}: expected {EXPECTED} (it lacks {sorted(missing)[0]})")
+        sets = {
+            key.removeprefix("edges:"): array
+            for key, array in arrays.items()
+            if key.startswith("edges:")
+        }
+        names = tuple(str(name) for name in arrays["body_names"].ravel())
+        given = (arrays["nodes"], arrays["triangles"], arrays["body"], names, sets)
+        found = flaw(*given)
+        if found:
+            raise FileError(f"{path}: {found}")
+        return cls(
+            nodes=given[0].astype(float),
+            triangles=given[1].astype(np.int32),
+            body=given[2].astype(np.int32),
+            body_names=names,
+            edge_sets={name: edges.astype(np.int32) for name, edges in sets.items()},
+        )
 
 
 @dataclass(frozen=True)
@@ -182,6 +210,32 @@ class Fracture:
 
 
 @dataclass(frozen=True)
+class Guards:
+    """When a run is worth a warning, and when it is stopped; all are relative.
+
+    energy_residual : of the ledger, over the largest energy so far
+    element_area : smallest one, over that in the reference
+    overlap : depth of a boundary node in an element, over the shortest boundary edge
+    time_step : critical step of the smallest piece of an element, over that of the mesh
+    unconverged : steps in which contact did not converge, over all steps of the run
+    speed : of the fastest node, over the P wave speed of its body
+    """
+
+    energy_residual_warning: float = 1e-4
+    energy_residual_stop: float = 1e-2
+    element_area_warning: float = 0.1
+    element_area_stop: float = 0.0
+    overlap_warning: float = 0.01
+    overlap_stop: float = 0.05
+    time_step_warning: float = 0.39
+    time_step_stop: float = 0.36
+    unconverged_warning: float = 0.05
+    unconverged_stop: float = 0.5
+    speed_warning: float = 0.1
+    speed_stop: float = 0.2
+
+
+@dataclass(frozen=True)
 class Measures:
     """How axial stress and strain of a specimen follow from the boundary records.
 
@@ -215,3 +269,5 @@ class Problem:
     measures: Measures | None = None
     records: int = 1000  # rows of the history
     fields: int = 5  # VTU frames, 0 for none
+    guards: Guards = Guards()
+    checkpoint_seconds: float = 20.0  # of wall time between two checkpoints; no bit depends on it

@@ -2,6 +2,7 @@
 
 import sys
 import time
+from contextlib import suppress
 from typing import TextIO
 
 EVERY_SECONDS = 10.0  # between two lines of a log
@@ -24,16 +25,28 @@ class Progress:
 
     def __call__(self, report: dict) -> None:
         """Take one report: step, steps, time_s, percent, rate, cracks, residual, seconds_left."""
-        if self.stream.isatty():
-            self._move_bar(report)
-        elif time.monotonic() - self.written > EVERY_SECONDS or report["step"] == report["steps"]:
-            self.written = time.monotonic()
-            print(f"{self.name}: {line(report)}", file=self.stream, flush=True)
+        with suppress(OSError):  # a full disk below the log is no reason to stop
+            if self.stream.isatty():
+                self._move_bar(report)
+            elif (
+                time.monotonic() - self.written > EVERY_SECONDS or report["step"] == report["steps"]
+            ):
+                self.written = time.monotonic()
+                print(f"{self.name}: {line(report)}", file=self.stream, flush=True)
+
+    def warn(self, said: str) -> None:
+        """Put a sentence on a line of its own."""
+        text = f"{self.name}: warning: {said}"
+        if self.bar is None:
+            print(text, file=self.stream, flush=True)
+        else:
+            self.bar.write(text, file=self.stream)
 
     def close(self) -> None:
         """Leave the bar as it is and go to a new line."""
         if self.bar is not None:
-            self.bar.close()
+            with suppress(OSError):
+                self.bar.close()
 
     def _move_bar(self, report: dict) -> None:
         if self.bar is None:

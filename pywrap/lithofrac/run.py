@@ -20,20 +20,20 @@ import lithofrac
 from lithofrac._build import NATIVE
 from lithofrac.analysis.crack_faces import find_faces
 from lithofrac.analysis.frames import MM, Frame
-from lithofrac.analysis.strength import first_peak
-from lithofrac.core import ContactStatistics, Run
+from lithofrac.analysis.run_numbers import finite, peak, ratio, residual
+from lithofrac.config.cost import ELASTIC_RATE, YIELDING_RATE
+from lithofrac.core import Run
 from lithofrac.errors import CoreError
+from lithofrac.guards import Watch
 from lithofrac.problem import Problem
 from lithofrac.results import checkpoint
 from lithofrac.results.cracks import crack_table, fragment_table
 from lithofrac.results.fields import write_cracks, write_frame, write_series
 from lithofrac.results.files import write_json, write_table
+from lithofrac.results.lock import only_run
 from lithofrac.results.recorder import Recorder
 
-CHECKPOINT_SECONDS = 20.0
-MANY_UNCONVERGED = 0.05  # of the steps: worth a note in the summary
-# Of one core, for the prediction of `plan`: all elastic, and with half of the elements yielding.
-ELASTIC_RATE, YIELDING_RATE = 60e6, 6e6  # element-steps per second
+FAILED_FRAME = "fields/failed.vtu"
 
 
 def plan(problem: Problem) -> dict:
@@ -78,6 +78,8 @@ def simulate(
     resume: bool = False,
     progress: Callable[[dict], None] | None = None,
     meta: dict | None = None,
+    prepare: Callable[[], None] | None = None,
+    warn: Callable[[str], None] | None = None,
 ) -> dict:
     """Step `problem` to its end and write the results folder `out`.
 
@@ -90,6 +92,8 @@ def simulate(
     progress : called at every record with step, steps, time_s, percent, rate, residual and
         seconds_left
     meta : entries for the summary (case, commit)
+    prepare : called once the folder belongs to this run, before anything is written into it
+    warn : called with a sentence when a guard warns for the first time
 
     Returns
     -------
@@ -99,26 +103,38 @@ def simulate(
     Raises
     ------
     CoreError
-        A step failed, or there is no good checkpoint; summary.json says `failed`, and
-        fields/failed.vtu holds the state to look at.
+        A step failed or a guard stopped the run: summary.json says `failed`, fields/failed.vtu
+        and checkpoint_failed.npz hold the state to look at, and the last good checkpoint stays.
+        Or there is no good checkpoint to resume from.
     KeyboardInterrupt
         Passed on after a checkpoint is written; summary.json says `interrupted`.
+    FolderInUseError
+        Another run is at work in the folder.
     OSError
-        The folder cannot be written.
+        The folder cannot be written; the checkpoints that it holds stay as they are.
     """
-    (out / "fields").mkdir(parents=True, exist_ok=True)
-    session = _Session(problem, out, threads, meta or {})
-    if resume:
-        session.resume()
+    with only_run(out) as notes:
+        if prepare is not None:
+            prepare()
+        (out / "fields").mkdir(exist_ok=True)
+        session = _Session(problem, out, threads, meta or {}, warn)
+        session.notes += notes
+        if resume:
+            session.resume()
+        return _to_its_end(session, out, progress)
+
+
+def _to_its_end(session: _Session, out: Path, progress: Callable[[dict], None] | None) -> dict:
+    """Step a session to its end; whatever stops it, the folder says so."""
     try:
         session.run_to_end(progress)
     except KeyboardInterrupt:
-        session.save_checkpoint()
-        session.write("interrupted")
+        if session.recorder.history:
+            session.save_checkpoint()
+            session.write("interrupted")
         raise
     except CoreError as error:
-        write_frame(out / "fields" / "failed.vtu", session.run)
-        session.write("failed", str(error))
+        session.fail(str(error))
         raise
     return session.write("completed")
 
@@ -126,14 +142,23 @@ def simulate(
 class _Session:
     """One call of `simulate`: the run, its records and its clocks."""
 
-    def __init__(self, problem: Problem, out: Path, threads: int, meta: dict) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        out: Path,
+        threads: int,
+        meta: dict,
+        warn: Callable[[str], None] | None,
+    ) -> None:
         self.problem, self.out, self.threads, self.meta = problem, out, threads, meta
+        self.warn = warn
         self.run = Run(problem)
         self.recorder = Recorder(self.run)
         self.frames: list[tuple] = []  # time [s], files
         self.mark = checkpoint.fingerprint(problem)
         self.steps = math.ceil(problem.end_time / self.run.dt)
         self.every = max(1, self.steps // problem.records)
+        self.watch = Watch(self.run, self.steps)
         self.core_before = self.wall_before = 0.0
         self.core_start, self.wall_start = time.process_time(), time.perf_counter()
         self.first_step = 0
@@ -148,43 +173,64 @@ class _Session:
         return self.wall_before + time.perf_counter() - self.wall_start
 
     def resume(self) -> None:
-        arrays, self.notes = checkpoint.read(self.out, self.mark)
+        found = checkpoint.recover(self.out, self.mark)
+        arrays = found.arrays
+        self.notes += found.notes
         self.run.restore(arrays["state"])
         self.recorder.restore(arrays)
+        self.watch.restore(arrays)
         self.core_before, self.wall_before = arrays["clocks"]
         self.frames = [
             (float(moment), *self._names(i)) for i, moment in enumerate(arrays["frames"])
         ]
         self.first_step = self.run.step
+        for name in (FAILED_FRAME, checkpoint.FAILED):
+            (self.out / name).unlink(missing_ok=True)
 
     def save_checkpoint(self) -> None:
-        checkpoint.write(
-            self.out,
-            self.mark,
-            {
-                "state": self.run.save(),
-                "clocks": np.array([self.core_seconds, self.wall_seconds]),
-                "frames": np.array([moment for moment, *_ in self.frames]),
-                **self.recorder.arrays(),
-            },
-        )
+        checkpoint.write(self.out, self.mark, self._arrays())
+
+    def fail(self, message: str) -> None:
+        """Write the state that failed, apart from the checkpoints, and the tables so far."""
+        if not self.recorder.history:  # the start itself failed
+            self.recorder.record()
+        checkpoint.write_failed(self.out, self.mark, self._arrays())
+        write_frame(self.out / FAILED_FRAME, self.run, numbered=True)
+        self.write("failed", message)
+
+    def _arrays(self) -> dict[str, np.ndarray]:
+        """All that a checkpoint keeps."""
+        return {
+            "state": self.run.save(),
+            "clocks": np.array([self.core_seconds, self.wall_seconds]),
+            "frames": np.array([moment for moment, *_ in self.frames]),
+            "finished": np.array(self.run.step >= self.steps),
+            **self.recorder.arrays(),
+            **self.watch.arrays(),
+        }
 
     def run_to_end(self, progress: Callable[[dict], None] | None) -> None:
         run = self.run
         if not self.recorder.history:
-            run.advance(0, self.threads)
-            self._record()
+            with _signals_later() as asked_to_stop:
+                run.advance(0, self.threads)
+                self._record()
+                self._look(step_before=-1)
+            if asked_to_stop:
+                raise KeyboardInterrupt
             self.save_checkpoint()
         saved = time.perf_counter()
         while run.step < self.steps:
             with _signals_later() as asked_to_stop:
-                run.advance(min(self.every, self.steps - run.step), self.threads)
+                step = run.step
+                run.advance(min(self.every, self.steps - step), self.threads)
                 self._record()
+                self._look(step_before=step)
             if asked_to_stop:
                 raise KeyboardInterrupt
             if progress is not None:
                 progress(self._progress())
-            if time.perf_counter() - saved > CHECKPOINT_SECONDS:
+            if time.perf_counter() - saved >= self.problem.checkpoint_seconds:
                 self.save_checkpoint()
                 saved = time.perf_counter()
         self.save_checkpoint()
@@ -211,6 +257,12 @@ class _Session:
                 faces.edges, table.iloc[faces.crack],
             )  # fmt: skip
         self.frames.append((moment, *names))
+
+    def _look(self, step_before: int) -> None:
+        """Hold the run against its guards, before its state becomes a checkpoint."""
+        for said in self.watch.look(step_before, self.recorder.energy[-1][-1]):
+            if self.warn is not None:
+                self.warn(said)
 
     def _progress(self) -> dict:
         done = self.run.step - self.first_step
@@ -266,13 +318,13 @@ class _Session:
             "core_seconds": core,
             "wall_seconds": self.wall_seconds,
             "element_steps_per_core_second": elements * run.step / core,
-            "energy": {name: _finite(value) for name, value in last.items()},
-            "energy_residual": _residual(energy),
-            **_peak(history, energy),
-            "damping_over_external": _ratio(
-                -energy["damping_J"].iloc[-1], energy["external_J"].iloc[-1]
+            "energy": {name: finite(value) for name, value in last.items()},
+            "energy_residual": residual(energy),
+            **peak(history, energy),
+            "damping_over_external": finite(
+                ratio(-energy["damping_J"].iloc[-1], energy["external_J"].iloc[-1])
             ),
-            "max_plastic_strain": _finite(
+            "max_plastic_strain": finite(
                 run.elements(np.arange(sizes.elements)).plastic_strain.max()
             ),
             "cracks": sizes.cracks,
@@ -281,11 +333,11 @@ class _Session:
             "crack_fallbacks": sizes.fallbacks,
             "crack_nodes_without_way": sizes.closed,
             "most_resets_of_an_element": sizes.most_resets,
-            "max_penetration_over_h": contact.max_penetration_over_h,
+            "max_penetration_over_h": finite(contact.max_penetration_over_h),
             "contact_pairs_max": contact.pairs_max,
             "contact_sweeps_mean": contact.sweeps_mean,
             "contact_unconverged_steps": contact.unconverged_steps,
-            "notes": [*self.notes, *_warnings(contact, run.step)],
+            "notes": [*self.notes, *self.watch.notes()],
         }
 
 
@@ -318,49 +370,3 @@ def _machine() -> str:
     models = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
     known = [platform.system(), platform.machine(), f"{os.cpu_count()} cores", *models[:1]]
     return ", ".join(part for part in known if part)
-
-
-def _peak(history, energy) -> dict:
-    """First peak of the axial stress (else the largest), kinetic over internal energy there."""
-    if "axial_stress_MPa" not in history:
-        return {"peak_stress_MPa": None, "peak_strain": None, "kinetic_ratio_at_peak": None}
-    stress = history["axial_stress_MPa"].to_numpy()
-    peak = first_peak(history["axial_strain"].to_numpy(), stress)
-    row = peak.index if peak is not None else int(np.nanargmax(stress))
-    entry = energy.iloc[row]
-    internal = (
-        entry["elastic_J"] + entry["compressive_dissipation_J"] + entry["fracture_dissipation_J"]
-    )
-    return {
-        "peak_stress_MPa": _finite(history["axial_stress_MPa"].iloc[row]),
-        "peak_strain": _finite(history["axial_strain"].iloc[row]),
-        "kinetic_ratio_at_peak": _finite(entry["kinetic_J"] / internal) if internal > 0 else None,
-    }
-
-
-def _residual(energy) -> float | None:
-    """Largest residual of the ledger over the largest energy that the run has seen."""
-    internal = energy["elastic_J"] + energy["compressive_dissipation_J"]
-    internal = internal + energy["fracture_dissipation_J"]
-    scale = max(internal.abs().max(), energy["external_J"].abs().max(), energy["kinetic_J"].max())
-    return _finite(energy["residual_J"].abs().max() / scale) if scale > 0.0 else 0.0
-
-
-def _warnings(contact: ContactStatistics, steps: int) -> list[str]:
-    """Sentences about a run that went to its end and yet should be looked at."""
-    if contact.unconverged_steps <= MANY_UNCONVERGED * steps:
-        return []
-    return [
-        f"contact did not converge in {contact.unconverged_steps} of {steps} steps; "
-        "try a smaller time_step_factor or loading speed"
-    ]
-
-
-def _ratio(part: float, whole: float) -> float:
-    """`part / whole`, 0 where there is no whole."""
-    return float(part / whole) if whole else 0.0
-
-
-def _finite(value: float) -> float | None:
-    """A JSON number, or null where there is none."""
-    return float(value) if math.isfinite(value) else None

@@ -12,6 +12,7 @@ import fcntl
 import hashlib
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -20,6 +21,7 @@ from pathlib import Path
 
 from lithofrac.analysis.study import check_quantities
 from lithofrac.config.errors import ConfigError
+from lithofrac.config.material import PACKAGED
 from lithofrac.config.setting import text_of
 from lithofrac.config.study import Study, load_study
 from lithofrac.errors import CoreError
@@ -27,7 +29,8 @@ from lithofrac.results.files import write_whole
 
 HERE = Path(__file__).parent
 RULES = HERE / "_rules" / "study.smk"
-GRACE = 5.0  # [s] for what is stopped to end by itself
+JOB = re.compile(r" *Job \d+: (.*)")  # how Snakemake says that one starts
+GRACE, CANCEL = 5.0, 60.0  # [s] for what is stopped to end by itself, here and on a cluster
 
 
 def checked(file: Path) -> tuple[Study, dict[str, str]]:
@@ -58,7 +61,14 @@ def _runs(names: list[str]) -> str:
     return f"run {names[0]}{more}"
 
 
-def start(file: Path, texts: dict[str, str], out: Path, cores: int | None, quiet: bool) -> None:
+def start(
+    file: Path,
+    texts: dict[str, str],
+    out: Path,
+    cores: int | None,
+    quiet: bool,
+    profile: str | None = None,
+) -> None:
     """Run what is missing or has changed, and write the table and the figure.
 
     Parameters
@@ -68,22 +78,24 @@ def start(file: Path, texts: dict[str, str], out: Path, cores: int | None, quiet
     out : results folder; made if it is not there
     cores : runs at a time, as many as there are cores where it is None
     quiet : print nothing unless something fails
+    profile : of Snakemake, for a cluster: its folder, or the name of one in `configs/profiles`
 
     Raises
     ------
     ConfigError
-        When `out` holds the study file, or cannot be written.
+        When `out` holds the study file, or cannot be written, or there is no such profile.
     CoreError
         When a run failed; names each and says why. The others are kept.
     """
     if out.resolve() == file.resolve().parent:
         raise ConfigError(f"--out {out}: holds the study file itself, expected another folder")
+    where = ["--cores", str(cores or "all")] if profile is None else _on_cluster(profile)
     try:
         for folder in (out, out / "cases", out / "log"):
             folder.mkdir(parents=True, exist_ok=True)
         with _alone_in(out):
             _write_inputs(file, texts, out)
-            if _snakemake(out, cores, quiet):
+            if _snakemake(out, where, quiet, CANCEL if profile else GRACE):
                 raise CoreError(_failures(out, list(texts)))
     except OSError as error:
         raise ConfigError(f"--out {out}: cannot be written ({error.strerror})") from None
@@ -99,11 +111,30 @@ def _write_inputs(file: Path, texts: dict[str, str], out: Path) -> None:
     _write_if_new(out / "jobs.json", json.dumps(jobs, indent=2) + "\n")
 
 
-def _snakemake(out: Path, cores: int | None, quiet: bool) -> int:
-    """Exit code of the pipeline; its words go to log/snakemake.txt."""
+def _on_cluster(profile: str) -> list[str]:
+    """Words for Snakemake that hand the runs to a cluster."""
+    places = [Path(profile), Path("configs/profiles") / profile, PACKAGED / "profiles" / profile]
+    for folder in places:
+        if (folder / "config.yaml").is_file():
+            return ["--profile", str(folder.resolve())]
+    known = ", ".join(sorted(path.name for path in (PACKAGED / "profiles").glob("*")))
+    raise ConfigError(
+        f"--profile {profile}: no such profile, expected a folder that holds config.yaml, or one "
+        f"of: {known}"
+    )
+
+
+def _snakemake(out: Path, where: list[str], quiet: bool, patience: float) -> int:
+    """Exit code of the pipeline; its words go to log/snakemake.txt.
+
+    Parameters
+    ----------
+    where : words that say where the runs are done
+    patience : for what is stopped to end by itself [s]
+    """
     command = [
         *(sys.executable, "-P", "-m", "snakemake", "--snakefile", str(RULES)),
-        *("--directory", str(out), "--cores", str(cores or "all")),
+        *("--directory", str(out), *where),
         *("--keep-going", "--rerun-incomplete", "--nocolor", "--nolock"),
     ]
     with (
@@ -114,21 +145,31 @@ def _snakemake(out: Path, cores: int | None, quiet: bool) -> int:
             stderr=subprocess.STDOUT,
             text=True,
             start_new_session=True,  # so that a signal reaches it and its runs once, from here
+            preexec_fn=_hear_interrupts,
         ) as process,
     ):
         try:
             for line in process.stdout:
                 log.write(line)
-                if not quiet and line.startswith("Job "):
-                    print(line.split(":", 1)[-1].strip(), file=sys.stderr, flush=True)
+                started = JOB.match(line)
+                if started and not quiet:
+                    print(started[1], file=sys.stderr, flush=True)
             return process.wait()
         except KeyboardInterrupt:
-            os.killpg(process.pid, signal.SIGTERM)
+            if patience == CANCEL:
+                os.kill(process.pid, signal.SIGINT)  # asks the cluster to cancel its jobs
+            else:
+                os.killpg(process.pid, signal.SIGTERM)
             with contextlib.suppress(subprocess.TimeoutExpired):
-                process.wait(GRACE)
+                process.wait(patience)
             with contextlib.suppress(ProcessLookupError):  # Snakemake may wait for a dead helper
                 os.killpg(process.pid, signal.SIGKILL)
             raise
+
+
+def _hear_interrupts() -> None:
+    """In the new process: what a shell starts in the background is deaf to SIGINT otherwise."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 @contextlib.contextmanager

@@ -2,8 +2,8 @@
 from snakemake.exceptions import WorkflowError
 
 # What is run, whatever suite is asked for: by the installed build each case, and for new
-# references also by a build that gives the same bits on every x86-64, with two more meshes of cases
-# that crack.
+# references also by a build that gives the same bits on every x86-64 since 2013, with two more meshes of
+# cases that crack.
 QUICK_SUITE = "configs/suite_quick.yaml"
 QUICK = load_suite(QUICK_SUITE)
 REALISED = [
@@ -18,6 +18,19 @@ PACKAGE = [file for file in sorted(Path("pywrap").rglob("*.py"))]
 SOURCES = CORE + [
     str(file) for file in PACKAGE if file.parent.name not in ("plots", "report")
 ]
+
+
+@cache
+def quick_cost(case):
+    """What a run of the quick suite is expected to take."""
+    return predicted(QUICK.case(case))
+
+
+# Where the tree is and somebody reads what they say, not on a node of a cluster.
+localrules:
+    portable,
+    regression,
+    update_references,
 
 
 wildcard_constraints:
@@ -45,6 +58,12 @@ rule run_quick:
         QUICK_RUN,
     log:
         f"{OUT}/log/regression_{{build}}_{{quick}}.txt",
+    group:
+        lambda wildcards: quick_cost(wildcards.quick).group
+    threads: lambda wildcards: quick_cost(wildcards.quick).threads
+    resources:
+        mem_mb=lambda wildcards: quick_cost(wildcards.quick).mem_mb,
+        runtime=lambda wildcards: quick_cost(wildcards.quick).runtime,
     params:
         case=lambda wildcards: QUICK.case(wildcards.quick).resolved(),
         first=lambda wildcards: (

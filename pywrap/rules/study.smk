@@ -1,7 +1,10 @@
 # The runs of a study, its table and its figure. `lithofrac study` writes study.yaml, cases/ and
 # jobs.json into the results folder and starts these rules there; Ctrl-C, then the same command.
 import sys
+from functools import cache
 from pathlib import Path
+
+from lithofrac.config import load_case, predicted
 
 
 configfile: "jobs.json"
@@ -11,6 +14,12 @@ CASES = config["cases"]
 RUNS = expand("runs/{case}/summary.json", case=CASES)
 # The interpreter that was asked, without the working folder on its path.
 LITHOFRAC = [sys.executable, "-P", "-m", "lithofrac"]
+
+
+@cache
+def cost(case):
+    """What a run is expected to take."""
+    return predicted(load_case(f"cases/{case}.yaml"))
 
 
 wildcard_constraints:
@@ -35,6 +44,12 @@ rule simulate:
         "runs/{case}/summary.json",
     log:
         "log/{case}.txt",
+    group:
+        lambda wildcards: cost(wildcards.case).group
+    threads: lambda wildcards: cost(wildcards.case).threads
+    resources:
+        mem_mb=lambda wildcards: cost(wildcards.case).mem_mb,
+        runtime=lambda wildcards: cost(wildcards.case).runtime,
     params:
         core=config["core"],  # another core, other results
         program=LITHOFRAC,
@@ -42,7 +57,7 @@ rule simulate:
         "Mesh and run {wildcards.case}"
     shell:
         "{params.program:q} run {input:q} --out runs/{wildcards.case}"
-        " --threads {threads} > {log:q} 2>&1"
+        " --threads {threads} --resume-if-possible > {log:q} 2>&1"
 
 
 rule collect:

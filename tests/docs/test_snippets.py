@@ -120,13 +120,19 @@ def check_snakemake(words, whole=True):
     rules = "".join(path.read_text() for path in RULES)
     value_of = ""
     for word in words:
-        if TARGET.match(word) and value_of not in ("--cores", "--config"):
+        value = value_of in ("--cores", "--config") or value_of.startswith("--slurm-status")
+        if TARGET.match(word) and not value:
             assert f"rule {word}:" in rules, f"there is no rule {word}"
+        if value_of == "--profile":
+            assert (ROOT / word / "config.yaml").is_file(), f"there is no profile {word}"
         value_of = word
 
 
 def check_python(words, whole=True):
-    """`python3 tasks.py TASK`."""
+    """`python3 tasks.py TASK`, or a command that the Slurm of the tests is started for."""
+    if words[:1] == ["tests/slurm/one_node.py"]:
+        CHECKS[words[1]](words[2:], whole)
+        return
     assert words[:1] == ["tasks.py"], f"python3 {' '.join(words)}: expected a task of tasks.py"
     check_tasks(words[1:], whole)
 

@@ -69,6 +69,15 @@ def test_history_measures_the_specimen(done):
     assert history["lateral_strain"].iloc[-1] > 0.0
 
 
+def test_the_lateral_strain_of_a_cylinder_counts_twice_in_its_volume(tmp_path):
+    simulate(specimen(axisymmetric=True, end_time=5e-5, fields=0), tmp_path)
+    history = pd.read_parquet(tmp_path / "history.parquet")
+    assert history["lateral_strain"].abs().max() > 0.0
+    np.testing.assert_allclose(
+        history["volumetric_strain"], 2 * history["lateral_strain"] - history["axial_strain"]
+    )
+
+
 def test_probes_and_ledger_have_a_row_a_record(done):
     probes = pd.read_parquet(done[0] / "probes.parquet")
     energy = pd.read_parquet(done[0] / "energy.parquet")
@@ -76,7 +85,7 @@ def test_probes_and_ledger_have_a_row_a_record(done):
     assert set(probes["probe"]) == {"corner", "middle"}
     inside = energy[["kinetic_J", "elastic_J", "compressive_dissipation_J"]].sum(axis=1)
     inside += energy["fracture_dissipation_J"]
-    outside = energy["external_J"] + energy["damping_J"]
+    outside = energy["external_J"] + energy["damping_J"] + energy["turning_J"]
     np.testing.assert_allclose(inside - outside, energy["residual_J"], atol=1e-9)
 
 

@@ -8,6 +8,8 @@ from contact_models import (
     ROCK,
     contact_problem,
     deepest_overlap,
+    join,
+    moved,
     split,
     split_between,
     uniform_strain,
@@ -153,3 +155,37 @@ def test_faces_of_a_short_crack_slide_and_do_not_overlap(length, speed, n=16, si
     print(f"slip {slip / (size / n):.3f}, overlap {overlap:.1e} of an edge")
     assert slip > 0.03 * size / n
     assert overlap < 5e-4
+
+
+def force_at_the_mouth(crossing):
+    """Force of the first step on the tip of a wedge that presses on both sides of a short crack.
+
+    The left side has slipped down the crack. The tip stands on its corner and, 5e-4 h deep, on
+    the face of the right side below that one's corner. The faces cross by `crossing` h.
+    """
+    h = 0.5
+    block = moved(rectangle(4, 4, 4 * h, 4 * h), (-2 * h, -4 * h))
+    shared = (abs(block.nodes[:, 0]) < 1e-9) & (block.nodes[:, 1] < -0.9 * h)
+    side = (block.centroids()[:, 0] > 0).astype(int)
+    block = split_between(block, side, np.flatnonzero(shared))
+    tip = h * np.array([5e-4, -0.04])
+    sides = [[np.cos(lean), np.sin(lean)] for lean in np.radians([110.0, 170.0])]
+    wedge = replace(rectangle(1, 1), nodes=tip + np.array([[0.0, 0.0], *sides]), edge_sets={})
+    wedge = replace(wedge, triangles=np.array([[0, 1, 2]], np.int32), body=np.zeros(1, np.int32))
+    mesh = join(block=block, wedge=wedge)
+    left, right = np.flatnonzero((abs(mesh.nodes) < 1e-9).all(axis=1))
+    displacement = np.zeros_like(mesh.nodes)
+    displacement[left, 1] = -0.05 * h
+    displacement[right, 0] = -crossing * h
+    run = Run(contact_problem(mesh))
+    run.set_motion(displacement, 0 * displacement)
+    run.advance(1)
+    return run.contact_forces()[-3]
+
+
+@pytest.mark.parametrize("crossing", [1e-9, 1e-7, 1e-6])
+def test_both_faces_hold_a_tip_beside_a_crack_though_they_cross_by_rounding(crossing):
+    """A node that the right face lets pass is inside the rock for good."""
+    open_crack = force_at_the_mouth(-crossing)
+    assert abs(open_crack[0]) > 0.0
+    np.testing.assert_allclose(force_at_the_mouth(crossing), open_crack, rtol=2e-3)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from contact_models import UNIT, contact_problem, join, momentum, moved
+from contact_models import UNIT, contact_problem, deepest_overlap, join, momentum, moved
 from models import Elastic, hold, rectangle
 
 from lithofrac.core import Run
@@ -78,6 +78,26 @@ def test_frictionless_impacts_keep_both_momenta(factor):
     assert abs(angular_now - angular) / arm_size < 1e-12
 
 
+def test_bodies_that_come_from_afar_are_met():
+    """They begin beyond the reach of the first list of candidates."""
+    block = rectangle(4, 4)
+    mesh = join(low=block, high=moved(block, (0.1, 2.0)))
+    run = Run(contact_problem(mesh, friction=0.3))
+    velocity = np.zeros_like(mesh.nodes)
+    velocity[len(block.nodes) :, 1] = -0.02
+    run.set_motion(0 * velocity, velocity)
+    overlap, pushed = 0.0, 0
+    while run.step * run.dt < 60.0:
+        run.advance(10)
+        overlap = max(overlap, deepest_overlap(run))
+        pushed += run.contact_forces().any()
+    assert run.contact_statistics().lists > 1
+    assert overlap < 5e-4
+    assert pushed > 0
+    assert momentum(run)[0][1] == pytest.approx(-0.02, rel=1e-12)
+    assert run.nodes()[1][: len(block.nodes), 1].mean() < -0.015, "it has been hit"
+
+
 @pytest.mark.parametrize("shift", [-0.015, -0.004, 0.004, 0.015])
 def test_nodes_that_nearly_face_each_other_turn_nothing(shift):
     """The reaction of a corner pair acts where the other node stands, not at its partner."""
@@ -107,7 +127,8 @@ def test_friction_changes_angular_momentum_by_less_than_1e_6_and_less_with_the_s
 
 
 @pytest.mark.parametrize(
-    ("young", "density"), [(1e6, 1.0), (1e-6, 1.0), (1.0, 1e2), (1.0, 1e-6), (1.0, 1e6)]
+    ("young", "density"),
+    [(1e6, 1.0), (1e-6, 1.0), *((1.0, ratio) for ratio in (1e2, 1e3, 1e4, 1e6, 1e-3, 1e-6))],
 )
 def test_unlike_bodies_are_kept_apart(young, density):
     """Ratios of stiffness and density up to 1e6 at a strain of 2e-3."""

@@ -136,3 +136,30 @@ def test_friction_is_looked_up_by_surface():
     run = Run(contact_problem(mesh, contact=contact, velocity_loads=loads))
     run.advance(int(60.0 / run.dt))
     assert abs(shear_over_pressure(run)) == pytest.approx(0.4, rel=5e-3)
+
+
+def test_where_faces_of_different_friction_meet_the_largest_holds():
+    """A tip with a rough and a smooth face is dragged over a fixed base."""
+    nodes = [[-1, 0], [0, 0], [1, 0], [0, -1], [0.4, 0], [0.9, 1], [-0.1, 1]]
+    mesh = replace(
+        rectangle(1, 1),
+        nodes=np.array(nodes, dtype=float),
+        triangles=np.array([[0, 3, 1], [3, 2, 1], [4, 5, 6]], np.int32),
+        body=np.array([0, 0, 1], np.int32),
+        body_names=("base", "tip"),
+        edge_sets={"rough": np.array([[6, 4]], np.int32)},
+    )
+    loads = (hold("x", range(4), 0), hold("y", range(4), 1))
+    loads += (hold("drag", [5, 6], 0, 1e-3), hold("press", [5, 6], 1, -1e-4))
+    run = Run(
+        contact_problem(
+            mesh,
+            contact=Contact({("rough", "base"): 0.6}, default_friction=0.1),
+            velocity_loads=loads,
+            damping=Damping(alpha=1.0, relative_to="ground"),
+        )
+    )
+    run.advance(int(60.0 / run.dt))
+    along, up = run.contact_forces()[4]
+    assert up > 0.0
+    assert along == pytest.approx(-0.6 * up, rel=1e-9)

@@ -30,7 +30,7 @@ def yielding(axisymmetric=False):
 @pytest.mark.parametrize("axisymmetric", [False, True])
 def test_threads_change_no_bit(axisymmetric):
     states = []
-    for threads in (1, 2, 3):
+    for threads in (1, 2, 3, 8):
         run = Run(yielding(axisymmetric))
         run.advance(600, threads)
         states.append(run.save())

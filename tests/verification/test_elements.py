@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 from models import Elastic, element_path, one_triangle, problem, rectangle
 
+from lithofrac.config import Material
 from lithofrac.core import Run
 
 TRIANGLE = 1e-3 * np.array([[0.0, 0.0], [1.0, 0.2], [0.3, 0.9]])
 ROUNDING = 1e-10  # of Young's modulus
+NEEDLES = {nu: Elastic(young=1.0, poisson=nu, density=1.0) for nu in (0.0, 0.25, 0.49, 0.4999)}
 
 
 def rotation(angle):
@@ -110,6 +112,26 @@ def test_nodal_forces_are_the_gradient_of_the_energy(axisymmetric):
 
 
 @pytest.mark.verification
+def test_nodal_forces_are_the_gradient_of_the_energy_after_it_has_yielded():
+    """Stress and strain have other axes then, so a moment is left that the rotation takes up."""
+    sandstone = Material.load("sandstone")
+    peak = displacements(TRIANGLE, rotation(0.2) @ [[0.99, 0.004], [0.004, 1.003]])
+    base = displacements(TRIANGLE, rotation(0.9) @ [[0.991, 0.002], [0.002, 1.002]])
+    rng, step = np.random.default_rng(3), 1e-10
+    b, c = TRIANGLE[1] - TRIANGLE[0], TRIANGLE[2] - TRIANGLE[0]
+    volume = 0.5 * (b[0] * c[1] - b[1] * c[0])
+    state, forces, *_ = element_path(sandstone, TRIANGLE, [peak, base])
+    assert state.plastic_strain[1] > 1e-3
+    for _ in range(5):
+        way = rng.normal(size=(3, 2))
+        path = [peak, base, base + step * way, base - step * way]
+        state, *_ = element_path(sandstone, TRIANGLE, path)
+        assert np.ptp(state.plastic_strain) == 0.0, "elastic from the peak on"
+        work = 0.5 * (state.stress[2] + state.stress[3]) @ (state.strain[2] - state.strain[3])
+        assert (forces[1] * way).sum() == pytest.approx(volume * work / (2 * step), rel=1e-6)
+
+
+@pytest.mark.verification
 @pytest.mark.parametrize("axisymmetric", [False, True])
 def test_critical_step_is_that_of_the_stiffness_matrix(axisymmetric):
     """2/omega against numpy's eigenvalues of a stiffness made by differences of forces."""
@@ -132,6 +154,44 @@ def test_critical_step_is_that_of_the_stiffness_matrix(axisymmetric):
         mass = np.repeat(mass * material.density, 2)
         omega = np.sqrt(np.linalg.eigvals(stiffness / mass[:, None]).real.max())
         assert critical == pytest.approx(2.0 / omega, rel=1e-6)
+
+
+@pytest.mark.verification
+def test_critical_step_of_needles_is_that_of_an_eigenvalue_solver(n_random):
+    """10^5 random triangles of aspect up to 10^4, Poisson's ratio up to 0.4999."""
+    rng = np.random.default_rng(7)
+    n = n_random(100_000)
+    nodes = rng.normal(size=(n, 3, 2))
+    nodes[:, :, 1] *= 10.0 ** rng.uniform(-4, 0, (n, 1))
+    b, c = nodes[:, 1] - nodes[:, 0], nodes[:, 2] - nodes[:, 0]
+    area = 0.5 * (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])
+    nodes = nodes[abs(area) > 1e-4]
+    n = len(nodes)
+    turn = rng.uniform(0, 2 * np.pi, n)
+    nodes = np.einsum("nij,nkj->nki", np.moveaxis(rotation(turn), -1, 0), nodes)
+    b, c = nodes[:, 1] - nodes[:, 0], nodes[:, 2] - nodes[:, 0]
+    area = 0.5 * (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])
+    nodes[area < 0] = nodes[area < 0][:, [0, 2, 1]]
+    poisson = rng.choice([0.0, 0.25, 0.49, 0.4999], n)
+    steps = []
+    for corners, nu in zip(nodes, poisson, strict=True):
+        *_, step = element_path(NEEDLES[nu], corners, [np.zeros((3, 2))])
+        steps.append(step)
+    ahead, behind = np.roll(nodes, -1, axis=1), np.roll(nodes, 1, axis=1)
+    slope = (ahead - behind)[..., ::-1] * [1, -1] / (2 * abs(area))[:, None, None]
+    operator = np.zeros((n, 3, 6))  # of the strain
+    operator[:, 0, 0::2] = operator[:, 2, 1::2] = slope[..., 0]
+    operator[:, 1, 1::2] = operator[:, 2, 0::2] = slope[..., 1]
+    shear = 1 / (2 * (1 + poisson))
+    lame = 2 * shear * poisson / (1 - 2 * poisson)
+    stiff = np.zeros((n, 3, 3))
+    stiff[:, :2, :2] = lame[:, None, None]
+    stiff[:, [0, 1], [0, 1]] += 2 * shear[:, None]
+    stiff[:, 2, 2] = shear
+    product = 3 * np.einsum("nai,nab,nbj->nij", operator, stiff, operator)
+    exact = 2 / np.sqrt(np.linalg.eigvalsh(product)[:, -1])
+    print(f"largest aspect {(np.ptp(nodes, axis=1).max(axis=1) ** 2 / abs(area)).max():.0f}")
+    np.testing.assert_allclose(steps, exact, rtol=1e-9)
 
 
 @pytest.mark.verification

@@ -38,7 +38,7 @@ class Run:
     @cached_property
     def summary(self) -> dict:
         """`summary.json`."""
-        return json.loads((self.folder / "summary.json").read_text())
+        return json.loads((self.folder / "summary.json").read_text("utf-8"))
 
     @cached_property
     def case(self) -> dict:

@@ -12,6 +12,7 @@ from lithofrac.config.errors import ConfigError, sentences
 from lithofrac.config.extend import GEOMETRY, Draft, nested, read_draft
 from lithofrac.config.fit import misfits
 from lithofrac.config.fracture import FractureSection
+from lithofrac.config.guards import GuardsSection
 from lithofrac.config.loading import Loading
 from lithofrac.config.material import Material, find_material
 from lithofrac.config.platens import PlatensSection
@@ -44,6 +45,8 @@ class Output(Section):
     """Rows of the history."""
     fields: int = Field(default=5, ge=0, le=10_000)
     """Frames of the fields, 0 for none."""
+    checkpoint_seconds: float = Field(default=20.0, ge=0.0, le=1e6)
+    """Wall time between two checkpoints, 0 for one at every record; no number depends on it."""
 
 
 class Probe(Section):
@@ -85,6 +88,10 @@ class Case(Section):
     probes: dict[str, Probe] = Field(default_factory=dict)
     """Points to record, beside those that the scene has anyway."""
     output: Output = Output()
+    budget_element_steps: float = Field(default=1e12, ge=1.0, le=1e18)
+    """Elements times steps above which the case is refused; the default is two days on one core."""
+    guards: GuardsSection = GuardsSection()
+    """When a run is worth a warning, and when it is stopped."""
 
     @model_validator(mode="after")
     def _parts_fit_together(self):

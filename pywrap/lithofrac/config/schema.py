@@ -52,7 +52,7 @@ def main(folder: Path) -> None:
     """Write all schemas into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, schema in schemas().items():
-        (folder / f"{name}.schema.json").write_text(text_of(schema))
+        (folder / f"{name}.schema.json").write_text(text_of(schema), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -39,6 +39,7 @@ from lithofrac.plots import (
     sandstone,
     single_element,
     size_effect,
+    stability,
     stiffness,
     study,
     style,
@@ -68,6 +69,7 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "size_effect": size_effect.figure,
     "punch_patterns": punch_patterns.figure,
     "variants": variants.figure,
+    "stability": stability.figure,
     "study": study.figure,
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {

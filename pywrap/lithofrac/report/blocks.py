@@ -5,7 +5,8 @@
     <!-- end -->
 
 The name is that of a table, `KEY=VALUE` keeps the rows in which that column has that value (`*`
-stands for anything), and `columns` keeps columns. Text outside the blocks is never touched.
+stands for anything), and `columns` keeps columns. With `else=keep` a table that was not made leaves
+its block as it is. Text outside the blocks is never touched.
 """
 
 import re
@@ -21,6 +22,7 @@ BLOCK = re.compile(
     r"(?P<head><!-- table: (?P<name>\w+)(?P<options>( \w+=\S+)*) -->\n).*?(?P<tail><!-- end -->)",
     re.DOTALL,
 )
+KEEP = "else=keep"  # of a table that the suite does not make
 
 
 def has_blocks(text: str) -> bool:
@@ -39,6 +41,8 @@ def fill(text: str, tables: dict[str, pd.DataFrame], file: str) -> str:
 
     def filled(block: re.Match) -> str:
         name = block["name"]
+        if name not in tables and KEEP in block["options"].split():
+            return block[0]
         if name not in tables:
             known = ", ".join(sorted(tables)) or "none, because nothing was run"
             raise DataError(f"{file}: table: {name!r}, expected one of {known}")
@@ -51,6 +55,8 @@ def _chosen(block: re.Match, table: pd.DataFrame, file: str) -> pd.DataFrame:
     """Rows and columns that a block asks for."""
     columns = list(table)
     for option in block["options"].split():
+        if option == KEEP:
+            continue
         key, value = option.split("=", 1)
         asked = value.split(",") if key == "columns" else [key]
         missing = [name for name in asked if name not in table]

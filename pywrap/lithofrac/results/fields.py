@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 from lithofrac.core import Run
-from lithofrac.results.files import write_whole
+from lithofrac.results.files import write_text, write_whole
 
 TENSOR, AXES = ("xx", "yy", "zz", "xy"), ("axis_1", "axis_2", "zz")
 COMPONENTS = {
@@ -27,11 +27,15 @@ COMPONENTS = {
 MODES = ("tensile", "compressive_dilation")  # the numbers 0 and 1 of the field `mode`
 
 
-def write_frame(path: Path, run: Run) -> None:
+def write_frame(path: Path, run: Run, numbered: bool = False) -> None:
     """Write the mesh of now with displacement, velocity and element state as one VTU file.
 
     Elements that were cut are left out; copies of a node share its reference position.
     Stress and strain are in the frame that rotates with the material; SI units in the names.
+
+    Parameters
+    ----------
+    numbered : also the numbers that messages give to nodes and elements, from 1
     """
     nodes, triangles, body, alive = run.mesh()
     displacement, velocity, _ = run.nodes()
@@ -50,6 +54,9 @@ def write_frame(path: Path, run: Run) -> None:
         points["contact_force_N"] = _with_zero(run.contact_forces())
     if run.problem.fracture is not None:
         cells["failure_factor"] = run.failure()[0][alive]
+    if numbered:
+        points["node"] = np.arange(1, len(nodes) + 1)
+        cells["element"] = np.flatnonzero(alive) + 1
     grid = meshio.Mesh(
         _with_zero(nodes),
         [("triangle", triangles[alive])],
@@ -102,7 +109,7 @@ def write_series(path: Path, frames: list[tuple]) -> None:
         '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n'
         f"  <Collection>\n{rows}  </Collection>\n</VTKFile>\n"
     )
-    write_whole(path, lambda part: part.write_text(text))
+    write_text(path, text)
 
 
 def _write(path: Path, grid: meshio.Mesh) -> None:

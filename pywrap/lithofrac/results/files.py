@@ -18,6 +18,7 @@ OWN_FILES = (
     "fragments.parquet",
     "checkpoint.npz",
     "checkpoint_previous.npz",
+    "checkpoint_failed.npz",
     "fields.pvd",
     "fields/frame_[0-9]*.vtu",
     "fields/cracks_[0-9]*.vtu",
@@ -29,22 +30,33 @@ OWN_FILES = (
 )  # of a run: what the next one in the same folder may delete
 
 
-def write_whole(path: Path, write: Callable[[Path], None]) -> None:
+def write_whole(path: Path, write: Callable[[Path], None], older: Path | None = None) -> None:
     """Call `write(temporary path)`, flush to disk, rename to `path`.
+
+    Parameters
+    ----------
+    older : where the file goes that has been `path` so far, once the new one is whole
 
     Raises
     ------
     OSError
-        From the disk; the temporary file is removed and an older `path` stays as it was.
+        From the disk; the temporary file is removed, older files stay as they were.
     """
-    temporary = path.with_name(f".{path.stem}.part{path.suffix}")
+    temporary = part_of(path)
     try:
         write(temporary)
         with open(temporary, "rb") as file:
             os.fsync(file.fileno())
+        if older is not None and path.exists():
+            path.replace(older)
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def part_of(path: Path) -> Path:
+    """Name of `path` while it is written; a run that is killed leaves it behind."""
+    return path.with_name(f".{path.stem}.part{path.suffix}")
 
 
 def write_table(path: Path, table: pd.DataFrame) -> None:
@@ -54,5 +66,9 @@ def write_table(path: Path, table: pd.DataFrame) -> None:
 
 def write_json(path: Path, values: dict) -> None:
     """Write a JSON object, one key a line; NaN is refused."""
-    text = json.dumps(values, indent=2, allow_nan=False) + "\n"
-    write_whole(path, lambda part: part.write_text(text))
+    write_text(path, json.dumps(values, indent=2, allow_nan=False) + "\n")
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text in UTF-8, whatever the locale."""
+    write_whole(path, lambda part: part.write_text(text, encoding="utf-8"))

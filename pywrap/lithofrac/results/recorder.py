@@ -20,6 +20,7 @@ ENERGY = (
     "insertion",
     "relump",
     "reset",
+    "turning",
 )
 ENERGY_COLUMNS = [
     "time_s",
@@ -34,6 +35,7 @@ ENERGY_COLUMNS = [
     "insertion_J",
     "relump_J",
     "reset_J",
+    "turning_J",
     "residual_J",
     "residual_relative",
 ]
@@ -195,7 +197,7 @@ class Recorder:
 def _residual(ledger: Energy) -> float:
     """Inside minus outside [J]; fortran/run/energy.f90 divides it by the largest energy so far."""
     outside = ledger.external + ledger.damping + ledger.contact + ledger.friction
-    outside += ledger.insertion + ledger.relump + ledger.initial
+    outside += ledger.insertion + ledger.relump + ledger.turning + ledger.initial
     return ledger.kinetic + ledger.internal - outside
 
 

@@ -9,6 +9,7 @@ from lithofrac.problem import (
     Contact,
     Damping,
     Fracture,
+    Guards,
     Measures,
     Mesh,
     PressureLoad,
@@ -32,6 +33,8 @@ def settings(case: Case, mesh: Mesh, points: dict[str, tuple[float, float]]) -> 
         "probes": probes(case, mesh, points),
         "records": case.output.records,
         "fields": case.output.fields,
+        "guards": Guards(**case.guards.model_dump()),
+        "checkpoint_seconds": case.output.checkpoint_seconds,
     }
 
 

@@ -43,12 +43,11 @@ def test_a_run_resumes_at_the_step_of_a_crack(cracking, load, mode, first, more)
 
 @MODES
 def test_threads_change_no_bit_of_a_cracking_run(cracking, mode):
-    runs = [cracking("squeeze", mode).start() for _ in range(3)]
-    for threads, run in enumerate(runs, 1):
+    runs = {threads: cracking("squeeze", mode).start() for threads in (1, 2, 3, 8)}
+    for threads, run in runs.items():
         run.advance(400, threads)
-    assert runs[0].sizes().cracks > 10
-    assert same_bits(runs[0], runs[1])
-    assert same_bits(runs[0], runs[2])
+    assert runs[1].sizes().cracks > 10
+    assert all(same_bits(runs[1], run) for run in runs.values())
 
 
 @MODES

@@ -81,7 +81,7 @@ def test_ringing_is_not_taken_for_a_kink():
     """Platens that ring make neighbours go together; as white noise they would pass the F-test."""
     for period in (1.5, 3.0, 6.0):
         ringing = 5e-6 * np.sin(2 * np.pi * STRESS / period)
-        assert find_kink(STRESS, strain("straight") + ringing, resolution=5e-6) is None
+        assert find_kink(STRESS, strain("straight") + ringing, resolution=3e-6) is None
 
 
 def test_kink_below_the_resolution_of_the_gauge_is_not_seen():

@@ -1,9 +1,15 @@
-"""What `lithofrac run` may delete, and when (pywrap/lithofrac/cli.py)."""
+"""What `lithofrac run` finds, may delete and resumes (pywrap/lithofrac/intake.py)."""
+
+import json
+import os
+import signal
 
 import pytest
 
 from lithofrac.cli import main
+from lithofrac.core import Run
 from lithofrac.errors import CoreError
+from lithofrac.results import checkpoint
 
 SHORT = ["--set", "scene.element_size_mm=2.5", "--set", "output.records=20", "--quiet"]
 MINE = ("table.parquet", "checkpoint_of_mine.npz", "fields/mine.vtu", "fields/frame_mine.vtu")
@@ -90,3 +96,82 @@ def test_threads_that_no_machine_has(tmp_path, capsys, threads):
     assert left.value.code == 2
     assert "expected a whole number from 1 to " in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+@pytest.fixture
+def interrupted(tmp_path, monkeypatch):
+    """Folder of a run that was stopped on its way."""
+    out, advance, calls = tmp_path / "interrupted", Run.advance, []
+
+    def stopping(self, steps, threads=1):
+        advance(self, steps, threads)
+        calls.append(steps)
+        if len(calls) == 5:
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Run, "advance", stopping)
+        assert main(["run", "bar_wave", *SHORT, "--out", str(out)]) == 130
+    return out
+
+
+def first_step(folder, monkeypatch, *more):
+    """Step at which `--resume-if-possible` begins."""
+    steps, advance = [], Run.advance
+
+    def noting(self, n, threads=1):
+        steps.append(self.step)
+        advance(self, n, threads)
+
+    monkeypatch.setattr(Run, "advance", noting)
+    words = ["run", "bar_wave", *SHORT, *more, "--resume-if-possible", "--out", str(folder)]
+    assert main(words) == 0
+    return steps[0]
+
+
+def test_what_was_stopped_goes_on_if_possible(interrupted, monkeypatch, capsys):
+    capsys.readouterr()
+    assert first_step(interrupted, monkeypatch) > 0
+    assert capsys.readouterr().err == ""
+
+
+def test_no_folder_yet_is_a_new_run(tmp_path, monkeypatch, capsys):
+    assert first_step(tmp_path / "new", monkeypatch) == 0
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("what", ["finished", "another case", "another build", "damaged"])
+def test_what_is_not_this_run_stopped_is_run_anew(finished, interrupted, monkeypatch, capsys, what):
+    """A run that is finished is wanted again because something has changed."""
+    folder = finished if what == "finished" else interrupted
+    more = ["--set", "loading.stress_MPa=2"] if what == "another case" else []
+    if what == "another build":
+        monkeypatch.setattr(checkpoint, "build", lambda: "another")
+    if what == "damaged":
+        (folder / checkpoint.PREVIOUS).unlink()
+        (folder / checkpoint.NAME).write_bytes(b"PK")
+    capsys.readouterr()
+    assert first_step(folder, monkeypatch, *more) == 0
+    assert capsys.readouterr().err == (
+        f"lithofrac: {folder}: its checkpoint is not of this run, starting anew\n"
+    )
+
+
+def test_resume_with_another_build_is_noted(interrupted, monkeypatch, capsys):
+    monkeypatch.setattr(checkpoint, "build", lambda: "another")
+    capsys.readouterr()
+    assert main(["run", "bar_wave", *SHORT, "--resume", "--out", str(interrupted)]) == 0
+    note = (
+        f"{interrupted / checkpoint.NAME}: made by another build, bits may differ from those of "
+        "an unbroken run"
+    )
+    assert capsys.readouterr().err == f"lithofrac: {note}; going on from {checkpoint.NAME}\n"
+    assert json.loads((interrupted / "summary.json").read_text())["notes"] == [note]
+
+
+def test_half_files_of_a_killed_run_go(finished):
+    parts = [".checkpoint.part.npz", ".history.part.parquet", "fields/.frame_0001.part.vtu"]
+    for name in parts:
+        (finished / name).write_text("half")
+    assert main(["run", "bar_wave", *SHORT, "--out", str(finished)]) == 0
+    assert not [name for name in parts if (finished / name).exists()]

@@ -218,3 +218,13 @@ def _running_below(folder):
         if here.startswith(str(folder)):
             found.append(process.name)
     return found
+
+
+def test_profile_that_is_not_there_is_refused_before_anything_is_written(study, tmp_path, capsys):
+    out = tmp_path / "nothing"
+    assert main(["study", str(study), "--out", str(out), "--profile", "lsf"]) == 2
+    assert capsys.readouterr().err == (
+        "lithofrac: --profile lsf: no such profile, expected a folder that holds config.yaml, or "
+        "one of: pbs, slurm\n"
+    )
+    assert not out.exists()

@@ -51,6 +51,13 @@ def test_rows_are_chosen_of_a_table_that_has_none():
     assert "Nothing of this kind was run." in text
 
 
+def test_block_may_keep_what_it_has_where_there_is_no_table():
+    text = "<!-- table: speed else=keep columns=x -->\nold\n<!-- end -->\n"
+    assert fill(text, TABLES, "a.md") == text
+    filled = fill(text, {"speed": pd.DataFrame({"x": [1.5], "y": [2.5]})}, "a.md")
+    assert "| 1.5 |\n<!-- end -->" in filled and "old" not in filled
+
+
 def test_two_blocks_do_not_swallow_the_text_between_them():
     text = fill(block() + block(), TABLES, "a.md")
     assert text.count("after") == 2

@@ -345,3 +345,10 @@ def test_references_are_not_replaced_without_a_reason(tree):
     assert jobs["run_quick"] > 14  # the portable build, and more meshes of what cracks
     assert "PYTHONPATH=build/portable-site lithofrac run punch_discrete@seed2 " in done.stdout
     assert """--why 'it'"'"'s finer'""" in done.stdout
+
+
+def test_stability_is_made_when_it_is_asked_for_and_only_then(tree):
+    assert "make_stability" not in planned(tree)
+    jobs = planned(tree, "stability")
+    assert (jobs["make_stability"], jobs["plot_stability"], jobs["stability"]) == (1, 1, 1)
+    assert not {"simulate", "page"} & set(jobs)

@@ -1,0 +1,147 @@
+"""What a run will take, from its case alone: for a scheduler, which asks before anything is meshed.
+
+Elements are those of `element_count` and of the platens; steps are the duration of the test over
+the time step of its smallest elements. `SAFETY` covers what that leaves out. Rates and shares were
+measured on the suite; reports/guide/cluster.md says how near its runs come.
+"""
+
+import math
+from dataclasses import dataclass
+
+from lithofrac.config.case import Case
+from lithofrac.config.element_count import element_count
+from lithofrac.config.gmsh_file import GmshFile
+from lithofrac.config.loading import TractionLoading
+from lithofrac.config.scene import (
+    Bar,
+    Brazilian,
+    Hole,
+    HoleInBlock,
+    Punch,
+    Scene,
+    SingleElement,
+)
+
+# Of one core: all elastic, and with half of the elements yielding.
+ELASTIC_RATE, YIELDING_RATE = 60e6, 6e6  # element-steps per second
+STEP_SECONDS = 1e-5  # of each step, beside its elements
+# Time step at factor 1 over the time of a pressure wave along the nominal edge length: of equal
+# right-angled triangles, and of the worst of an unstructured mesh.
+STRUCTURED_STEP, UNSTRUCTURED_STEP = 0.65, 0.45
+CUT_STEP = 0.44  # over that step, once cracks cut elements
+
+SAFETY = 4  # of the time limit: the slowest run of the suite took 2.7 times its prediction
+START_MINUTES = 5  # in each limit, to start Python and mesh, on a file system that is slow
+BASE_MB = 1000  # a run takes 220, and Snakemake stands beside it in the job
+BYTES_PER_ELEMENT = 2000  # of which the core takes less than half
+ELEMENTS_A_THREAD, MOST_THREADS = 20_000, 8  # choice: runs side by side use cores better
+SHORT_SECONDS = 120.0  # choice: up to here a job of its own would be mostly waiting
+OWN_ELEMENTS, OWN_STEPS = (
+    20_000,
+    500_000,
+)  # choice: a geometry of one's own tells its size to gmsh only
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Prediction for one run.
+
+    Attributes
+    ----------
+    elements : of rock and platens
+    steps : of time
+    seconds : on one core
+    """
+
+    elements: float
+    steps: float
+    seconds: float
+
+    @property
+    def threads(self) -> int:
+        """Cores that are worth asking for."""
+        return max(1, min(MOST_THREADS, int(self.elements / ELEMENTS_A_THREAD)))
+
+    @property
+    def mem_mb(self) -> int:
+        """Memory to ask for [MB]."""
+        return math.ceil(BASE_MB + BYTES_PER_ELEMENT * self.elements / 1e6)
+
+    @property
+    def runtime(self) -> int:
+        """Time limit to ask for [min]: one thread, `SAFETY` and `START_MINUTES` in it."""
+        return START_MINUTES + math.ceil(SAFETY * self.seconds / 60)
+
+    @property
+    def group(self) -> str | None:
+        """`short` where several runs should share a job of the cluster."""
+        return "short" if self.seconds <= SHORT_SECONDS else None
+
+
+def predicted(case: Case) -> Cost:
+    """What a run of the case will take, good to a factor of 1.5 in elements and steps.
+
+    Of a geometry from a file nothing is known before gmsh reads it: a fixed, ample guess.
+    """
+    if isinstance(case.scene, GmshFile):
+        return Cost(OWN_ELEMENTS, OWN_STEPS, OWN_ELEMENTS * OWN_STEPS / YIELDING_RATE)
+    bodies = [(element_count(case.scene), *_rock(case)), *_platens(case)]
+    elements = sum(count for count, _, _ in bodies)
+    step = case.time_step_factor * min(share * size for _, share, size in bodies)
+    if case.fracture.mode == "intra_element":
+        step *= CUT_STEP
+    steps = max(1.0, _duration(case) / step)
+    rate = ELASTIC_RATE if case.material.elastic else YIELDING_RATE
+    return Cost(elements, steps, steps * (elements / rate + STEP_SECONDS))
+
+
+def _rock(case: Case) -> tuple[float, float]:
+    """Share of the wave's time, and that time for the smallest elements of the rock [s]."""
+    scene = case.scene
+    size = scene.element_size
+    if isinstance(scene, HoleInBlock):
+        size = min(size, scene.wall_size)
+    if isinstance(scene, Punch):
+        size = scene.fine_size
+    equal = isinstance(scene, SingleElement) or getattr(scene, "structured", False)
+    return STRUCTURED_STEP if equal else UNSTRUCTURED_STEP, size / case.material.wave_speed
+
+
+def _platens(case: Case) -> list[tuple[float, float, float]]:
+    """For each platen its elements, share and time, as in `_rock`."""
+    if case.platens is None:
+        return []
+    platens, found = case.platens, []
+    for length, size in _fronts(case.scene, 2 * platens.overhang):
+        own = size * platens.element_size_over_rock
+        count = 2 * max(1.0, length / own) * max(1.0, platens.thickness / own)
+        found.append((count, STRUCTURED_STEP, own / platens.material.wave_speed))
+    return found
+
+
+def _fronts(scene: Scene, more: float) -> list[tuple[float, float]]:
+    """Length of the face of each platen, and size of the rock's elements there [m]."""
+    size = scene.element_size
+    if isinstance(scene, Punch):
+        beside = (scene.block_height, (scene.fine_size + size) / 2)
+        return [(scene.strip_width + more, scene.fine_size), beside, beside]
+    if isinstance(scene, Hole):
+        return [(scene.height + more, size)]
+    if isinstance(scene, Brazilian):
+        return 2 * [(scene.flat_width + more, size)]
+    sides = 2 * [(scene.height, size)] if scene.lateral_platens else []
+    return 2 * [(scene.width + more, size)] + sides
+
+
+def _duration(case: Case) -> float:
+    """Time of the test [s]."""
+    scene, loading, material = case.scene, case.loading, case.material
+    transit = scene.height / material.wave_speed
+    ramp = loading.ramp_transits * transit
+    if isinstance(loading, TractionLoading):
+        return ramp + loading.hold_transits * transit
+    one_end = isinstance(scene, (SingleElement, Bar, Punch))
+    length = scene.height if one_end else scene.height / 2
+    confined = loading.confinement * (1 - 2 * material.poisson) / material.young
+    before = ramp if loading.confinement > 0.0 else 0.0
+    return before + ramp / 2 + (confined + loading.end_strain) * length / loading.speed

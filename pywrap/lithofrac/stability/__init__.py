@@ -1,0 +1,1 @@
+"""The stability matrix: extremes of the model, each tried, judged and pushed to where it breaks."""

@@ -1,0 +1,73 @@
+"""Ctrl-C and SIGTERM: a checkpoint, a sentence, exit code 130 (pywrap/lithofrac/run.py, cli.py)."""
+
+import os
+import signal
+
+import pytest
+from fault_runs import assert_same, summary
+
+from lithofrac.cli import main
+from lithofrac.results.recorder import Recorder
+
+pytestmark = [pytest.mark.restart, pytest.mark.one_build]
+SIGNALS = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+
+
+@SIGNALS
+def test_stopped_run_keeps_where_it_was(cracking, unbroken, tmp_path, number):
+    out = tmp_path / "out"
+    code, said = cracking.stop(out, number, 30.5)
+    assert code == 130
+    assert said == f"lithofrac: interrupted; the same command with --resume goes on from {out}\n"
+    stopped = summary(out)
+    assert stopped["status"] == "interrupted"
+    assert 0 < stopped["steps"] < summary(unbroken)["steps"]
+    assert cracking.run(out, "--resume") == (0, "")
+    assert_same(unbroken, out)
+
+
+@SIGNALS
+def test_stopped_within_its_first_record_it_keeps_that(
+    cracking, unbroken, tmp_path, monkeypatch, capsys, number
+):
+    out, note = tmp_path / "out", Recorder._note_fragments
+
+    def stopped(self):
+        os.kill(os.getpid(), number)
+        note(self)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Recorder, "_note_fragments", stopped)
+        assert main(cracking.words(out)) == 130
+    said = capsys.readouterr().err
+    assert said == f"lithofrac: interrupted; the same command with --resume goes on from {out}\n"
+    assert summary(out)["steps"] == 0
+    assert main(cracking.words(out, "--resume")) == 0
+    assert_same(unbroken, out)
+
+
+@SIGNALS
+def test_stopped_before_its_first_record_it_has_nothing_to_keep_and_says_so(
+    cracking, tmp_path, monkeypatch, capsys, number
+):
+    out = tmp_path / "out"
+    monkeypatch.setattr(Recorder, "__init__", lambda *_: os.kill(os.getpid(), number))
+    assert main(cracking.words(out)) == 130
+    assert capsys.readouterr().err == "lithofrac: interrupted\n"
+    assert not (out / "summary.json").exists()
+    assert not list(out.glob("checkpoint*"))
+
+
+@pytest.mark.slow
+@SIGNALS
+def test_stopped_at_random_moments(cracking, unbroken, moments, tmp_path, number):
+    for i, moment in enumerate(moments(10, seed=int(number))):
+        out = tmp_path / str(i)
+        code, said = cracking.stop(out, number, moment)
+        assert code in (0, 130)
+        assert said.count("\n") == (code == 130)
+        if (out / "checkpoint.npz").exists():
+            assert cracking.run(out, "--resume") == (0, "")
+            assert_same(unbroken, out)
+        else:
+            assert said == "lithofrac: interrupted\n"
