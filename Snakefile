@@ -29,25 +29,21 @@ def modules(part, *names):
 
 
 # Sources that decide a result beside its case: the core, and what a run imports; so its summary
-# says its peak and its fragments by three modules of `analysis`.
+# says its peak and its fragments by modules of `analysis`.
 CORE = [
     str(file)
     for part in ("fortran", "pywrap/face")
     for file in sorted(Path(part).rglob("*.f90"))
 ]
-WORDS = [
-    "reference",
-    "schema",
-    "setting",
-    "study",
-]  # pages, and what no case of a suite uses
+# Of `config`, but for pages, warnings, and what no case of a suite uses.
+WORDS = ["doubts", "reference", "schema", "setting", "study"]
 CONFIG = [file for file in modules("config") if Path(file).stem not in WORDS]
-POINT = [*CORE, *CONFIG, *modules("", "errors", "kernels", "point", "problem")]
+SHARED = [*CORE, *CONFIG, *modules("", "errors", "mesh_flaws", "npz", "problem")]
+POINT = [*SHARED, *modules("", "kernels", "point")]
 DECIDING = [
-    *CORE,
-    *CONFIG,
-    *modules("", "core", "errors", "problem", "run"),
-    *modules("analysis", "crack_faces", "frames", "strength"),
+    *SHARED,
+    *modules("", "core", "guards", "run"),
+    *modules("analysis", "crack_faces", "frames", "run_numbers", "strength"),
     *modules("results"),
     *modules("scenes"),
 ]
