@@ -67,7 +67,8 @@ def _without_cracks(run: Run, frame: Frame) -> Figure:
     drawn, axes = style.new_figure(1, 1, **_size(frame, 1))
     draw_bodies(axes[0, 0], run, frame, find_faces(frame, run.cracks), factor)
     _name_axes(axes[0, 0], frame)
-    axes[0, 0].set_title(_title(run, frame, factor), fontsize=9.0)
+    title = _title(run, frame, factor).replace(" at ", "\nat ")
+    axes[0, 0].set_title(title, loc="center", fontweight="normal")
     return drawn
 
 
