@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithofrac.arguments import parser
-from lithofrac.intake import accepted, case_of, made_of, mesh_of, prepare, resumed, way_on
+from lithofrac.intake import accepted, case_of, made_of, mesh_of, prepare, resumed, warn, way_on
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from lithofrac.config import Case
 
 GOOD, BAD_INPUT, NUMERICAL_FAILURE, MOVED, INTERRUPTED = 0, 2, 3, 4, 130
-BAD_INPUT_ERRORS = {"DataError", "CheckpointError", "FolderInUseError"}
+BAD_INPUT_ERRORS = {"DataError", "CheckpointError", "FileError", "FolderInUseError"}
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -57,8 +57,10 @@ def _one_command(arguments: list[str] | None) -> int:
         code = _exit_code(error)
         if code is None:
             raise
-        for line in str(error).splitlines():
-            _complain(line)
+        from lithofrac.config.errors import printable
+
+        for line in (str(error) or "not enough memory").split("\n"):
+            _complain(printable(line))
         return code
 
 
@@ -73,7 +75,7 @@ def _exit_code(error: Exception) -> int | None:
     from lithofrac.config import ConfigError
 
     names = {base.__name__ for base in type(error).__mro__}
-    if isinstance(error, (ConfigError, OSError)) or names & BAD_INPUT_ERRORS:
+    if isinstance(error, (ConfigError, OSError, MemoryError)) or names & BAD_INPUT_ERRORS:
         return BAD_INPUT
     return NUMERICAL_FAILURE if names & {"CoreError", "MeshError"} else None
 
@@ -94,7 +96,9 @@ def check(options: Namespace) -> int:
 
     names = options.case or list(load_suite(options.suite or default_suite()).names)
     if len(names) == 1:
-        _print_plan(names[0], case_of(names[0], options))
+        case = case_of(names[0], options)
+        _print_plan(names[0], case)
+        warn(names[0], case)
         return GOOD
     for name in names:
         print(f"{name}: {case_of(name, options).title}")
@@ -104,10 +108,14 @@ def check(options: Namespace) -> int:
 
 def mesh(options: Namespace) -> int:
     """Mesh a case and save it."""
+    from lithofrac.config import ConfigError
+    from lithofrac.results.files import write_whole
+
+    if options.out.exists() and not options.out.is_file():
+        raise ConfigError(f"--out {options.out}: is no regular file, expected a file to write")
     made = made_of(options.case, case_of(options.case, options), options.seed)
     options.out.parent.mkdir(parents=True, exist_ok=True)
-    with open(options.out, "wb") as file:  # a handle, so that no suffix is added
-        made.save(file)
+    write_whole(options.out, made.save)
     print(f"{options.out}: {len(made.triangles)} elements, {len(made.nodes)} nodes")
     return GOOD
 
@@ -126,6 +134,7 @@ def run(options: Namespace) -> int:
     for note in notes:
         _complain(note)
     name = Path(options.case).stem if options.case.endswith((".yaml", ".yml")) else options.case
+    warnings = warn(name, case, quiet=options.quiet)
     progress = Progress(name)
     before = signal.signal(signal.SIGTERM, _as_keyboard_interrupt)
     try:
@@ -136,7 +145,12 @@ def run(options: Namespace) -> int:
             resume=resume,
             progress=None if options.quiet else progress,
             warn=None if options.quiet else progress.warn,
-            meta={"case": name, "title": case.title, "commit": _commit()},
+            meta={
+                "case": name,
+                "title": case.title,
+                "commit": _commit(),
+                "input_warnings": warnings,
+            },
             prepare=None if resume else partial(prepare, out, Path(options.case), case, made),
         )
     except KeyboardInterrupt:

@@ -1,4 +1,4 @@
-"""What the compiled core may refuse, as a Python exception."""
+"""What the compiled core may refuse, and what a file may lack, as Python exceptions."""
 
 from __future__ import annotations
 
@@ -8,6 +8,10 @@ from functools import wraps
 
 class CoreError(RuntimeError):
     """The core refused a call; the message says why and where."""
+
+
+class FileError(ValueError):
+    """A file is not what it should be; the message names it and says why."""
 
 
 class GuardError(CoreError):

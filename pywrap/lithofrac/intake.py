@@ -6,6 +6,7 @@ Heavy modules are imported by the function that needs them.
 from __future__ import annotations
 
 import shutil
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,6 +27,16 @@ def case_of(name: str, options: Namespace) -> Case:
     return find_case(name, options.suite, settings(options.set))
 
 
+def warn(name: str, case: Case, quiet: bool = False) -> list[str]:
+    """Print and return what is doubtful about a case."""
+    from lithofrac.config.doubts import doubts
+
+    found = doubts(case)
+    for sentence in [] if quiet else found:
+        print(f"lithofrac: warning: {name}: {sentence}", file=sys.stderr)
+    return found
+
+
 def mesh_of(case: Case, options: Namespace) -> Mesh:
     """Mesh of the folder that is resumed, of the file that is named, or a new one."""
     from lithofrac.config import ConfigError
@@ -36,10 +47,7 @@ def mesh_of(case: Case, options: Namespace) -> Mesh:
         return made_of(options.case, case)
     if options.resume and not path.exists():
         raise ConfigError(f"{path}: no such file, there is no run to resume in {options.out}")
-    try:
-        return Mesh.load(path)
-    except (ValueError, KeyError, EOFError) as error:
-        raise ConfigError(f"{path}: expected a mesh of `lithofrac mesh` ({error})") from None
+    return Mesh.load(path)
 
 
 def made_of(name: str, case: Case, seed: int | None = None) -> Mesh:
@@ -71,6 +79,12 @@ def accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
         raise ConfigError(
             f"{name}: loading.{key} = {getattr(case.loading, key):g}: the run takes "
             f"{expected['steps']:.3g} steps, expected at most {MOST_STEPS}"
+        )
+    elements, steps = expected["elements"], expected["steps"]
+    if elements * steps > case.budget_element_steps:
+        raise ConfigError(
+            f"{name}: budget_element_steps = {case.budget_element_steps:g}: the run takes "
+            f"{elements} elements times {steps} steps, {elements * steps:.3g}"
         )
     return problem, expected
 

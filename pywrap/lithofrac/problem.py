@@ -1,7 +1,7 @@
 """What a run is made of, in SI units: mesh, boundary sets, loads, probes.
 
 A scene turns a checked case into a `Problem`; `lithofrac.run` steps it in the Fortran core.
-Nothing here reads files, and nothing here knows of config keys.
+Nothing here knows of config keys.
 """
 
 from __future__ import annotations
@@ -10,6 +10,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+
+from lithofrac.errors import FileError
+from lithofrac.mesh_flaws import flaw
+from lithofrac.npz import arrays_of
+
+EXPECTED = "a mesh of `lithofrac mesh`"
 
 
 @dataclass(frozen=True)
@@ -48,24 +54,46 @@ class Mesh:
     def save(self, path: Path) -> None:
         """Write to an .npz without pickled objects."""
         sets = {f"edges:{name}": edges for name, edges in self.edge_sets.items()}
-        np.savez(
-            path,
-            nodes=self.nodes,
-            triangles=self.triangles,
-            body=self.body,
-            body_names=np.array(self.body_names),
-            **sets,
-        )
+        with open(path, "wb") as file:  # a handle, so that no suffix is added
+            np.savez(
+                file,
+                nodes=self.nodes,
+                triangles=self.triangles,
+                body=self.body,
+                body_names=np.array(self.body_names),
+                **sets,
+            )
 
     @classmethod
     def load(cls, path: Path) -> Mesh:
-        """Read what `save` wrote; no code in the file is run."""
-        with np.load(path, allow_pickle=False) as file:
-            sets = {
-                key.removeprefix("edges:"): file[key] for key in file if key.startswith("edges:")
-            }
-            names = tuple(str(name) for name in file["body_names"])
-            return cls(file["nodes"], file["triangles"], file["body"], names, sets)
+        """Read what `save` wrote; no code in the file is run.
+
+        Raises
+        ------
+        FileError
+            Where the file is no mesh, or its mesh has a flaw.
+        """
+        arrays = arrays_of(path, EXPECTED)
+        missing = {"nodes", "triangles", "body", "body_names"} - set(arrays)
+        if missing:
+            raise FileError(f"{path}: expected {EXPECTED} (it lacks {sorted(missing)[0]})")
+        sets = {
+            key.removeprefix("edges:"): array
+            for key, array in arrays.items()
+            if key.startswith("edges:")
+        }
+        names = tuple(str(name) for name in arrays["body_names"].ravel())
+        given = (arrays["nodes"], arrays["triangles"], arrays["body"], names, sets)
+        found = flaw(*given)
+        if found:
+            raise FileError(f"{path}: {found}")
+        return cls(
+            nodes=given[0].astype(float),
+            triangles=given[1].astype(np.int32),
+            body=given[2].astype(np.int32),
+            body_names=names,
+            edge_sets={name: edges.astype(np.int32) for name, edges in sets.items()},
+        )
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ import fcntl
 import hashlib
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -28,6 +29,7 @@ from lithofrac.results.files import write_whole
 
 HERE = Path(__file__).parent
 RULES = HERE / "_rules" / "study.smk"
+JOB = re.compile(r" *Job \d+: (.*)")  # how Snakemake says that one starts
 GRACE, CANCEL = 5.0, 60.0  # [s] for what is stopped to end by itself, here and on a cluster
 
 
@@ -143,13 +145,15 @@ def _snakemake(out: Path, where: list[str], quiet: bool, patience: float) -> int
             stderr=subprocess.STDOUT,
             text=True,
             start_new_session=True,  # so that a signal reaches it and its runs once, from here
+            preexec_fn=_hear_interrupts,
         ) as process,
     ):
         try:
             for line in process.stdout:
                 log.write(line)
-                if not quiet and line.lstrip().startswith("Job "):
-                    print(line.split(":", 1)[-1].strip(), file=sys.stderr, flush=True)
+                started = JOB.match(line)
+                if started and not quiet:
+                    print(started[1], file=sys.stderr, flush=True)
             return process.wait()
         except KeyboardInterrupt:
             if patience == CANCEL:
@@ -161,6 +165,11 @@ def _snakemake(out: Path, where: list[str], quiet: bool, patience: float) -> int
             with contextlib.suppress(ProcessLookupError):  # Snakemake may wait for a dead helper
                 os.killpg(process.pid, signal.SIGKILL)
             raise
+
+
+def _hear_interrupts() -> None:
+    """In the new process: what a shell starts in the background is deaf to SIGINT otherwise."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 @contextlib.contextmanager

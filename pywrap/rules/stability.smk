@@ -8,14 +8,14 @@ STABILITY = [
 rule make_stability:
     # Cells run side by side in processes of their own.
     input:
-        CORE,
-        SCENERY,
+        DECIDING,
+        POINT,
         sorted(map(str, Path("pywrap/lithofrac/stability").rglob("*.py"))),
     output:
         STABILITY,
     log:
         f"{OUT}/log/stability.txt",
-    threads: workflow.cores
+    threads: 64  # all there are
     message:
         "Try the extremes of the model"
     shell:

@@ -6,8 +6,10 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -209,17 +211,54 @@ def test_same_suite_has_the_same_bits_here_and_on_the_cluster(tree, cluster):
     assert "cracks.parquet" in contents(tree / "here" / "runs" / "hole")
 
 
-def test_study_has_the_same_table_here_and_on_the_cluster(tree, cluster):
-    """Also that a site's own profile is a folder anywhere."""
-    profile = tree / "site"
-    profile.mkdir()
+def own_profile(tree):
+    """Folder of a copy of the profile, with the words of the Slurm of one_node.py."""
+    folder = tree / "site"
+    folder.mkdir()
     words = (tree / "configs" / "profiles" / "slurm" / "config.yaml").read_text()
     own = "slurm-status-command: squeue\nslurm-no-account: true\nseconds-between-status-checks: 2\n"
-    (profile / "config.yaml").write_text(words + own)
+    (folder / "config.yaml").write_text(words + own)
+    return folder
+
+
+def queue(environment):
+    """States of the jobs that wait or run."""
+    command = ["squeue", "-h", "-o", "%T"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    return done.stdout.split()
+
+
+def eventually(condition, seconds=120.0):
+    """True once it holds, False if it never does."""
+    end = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.5)
+    return True
+
+
+def test_study_that_is_stopped_leaves_no_job_on_the_cluster(tree, cluster):
+    (tree / "study.yaml").write_text(STUDY.replace("[0.1, 0.2]", "[0.00001]"))  # hours
+    command = [sys.executable, "-m", "lithofrac", "study", "study.yaml", "--out", "out"]
+    with subprocess.Popen(
+        [*command, "--profile", str(own_profile(tree))],
+        cwd=tree, env=cluster, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    ) as study:  # fmt: skip
+        try:
+            assert eventually(lambda: "RUNNING" in queue(cluster))
+        finally:
+            study.send_signal(signal.SIGTERM)
+        assert study.wait(120) == 130
+    assert eventually(lambda: queue(cluster) == [], 60.0)
+
+
+def test_study_has_the_same_table_here_and_on_the_cluster(tree, cluster):
+    """Also that a site's own profile is a folder anywhere."""
     (tree / "study.yaml").write_text(STUDY)
     for out, environment, where in (
         ("here", os.environ, ["--cores", "1"]),
-        ("there", cluster, ["--profile", str(profile)]),
+        ("there", cluster, ["--profile", str(own_profile(tree))]),
     ):
         done = subprocess.run(
             [sys.executable, "-m", "lithofrac", "study", "study.yaml", "--out", out, *where],

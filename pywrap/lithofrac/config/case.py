@@ -88,6 +88,8 @@ class Case(Section):
     probes: dict[str, Probe] = Field(default_factory=dict)
     """Points to record, beside those that the scene has anyway."""
     output: Output = Output()
+    budget_element_steps: float = Field(default=1e12, ge=1.0, le=1e18)
+    """Elements times steps above which the case is refused; the default is two days on one core."""
     guards: GuardsSection = GuardsSection()
     """When a run is worth a warning, and when it is stopped."""
 

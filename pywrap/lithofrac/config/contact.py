@@ -8,7 +8,7 @@ from typing import Annotated
 from pydantic import Field
 
 from lithofrac.config.base import Section
-from lithofrac.config.errors import suggestion
+from lithofrac.config.errors import one_line, suggestion
 
 ROCK, PLATEN = "rock", "platen"
 JOINT = "-"  # between the two surfaces of a key
@@ -36,14 +36,13 @@ class ContactSection(Section):
         found, seen = [], set()
         for key, value in self.friction.items():
             names = key.split(JOINT)
-            where = f"contact.friction.{key} = {value:g}"
+            where = f"contact.friction.{one_line(key)} = {value:g}"
             unknown = [name for name in names if name not in surfaces]
             if len(names) != 2:
                 found.append(f"{where}: expected two surfaces, as in {ROCK}{JOINT}{ROCK}")
             elif unknown:
-                found.append(
-                    f"{where}: unknown surface '{unknown[0]}', {suggestion(unknown[0], surfaces)}"
-                )
+                known = suggestion(unknown[0], surfaces)
+                found.append(f"{where}: unknown surface '{one_line(unknown[0])}', {known}")
             elif frozenset(names) in seen:
                 found.append(f"{where}: the pair is given twice, expected one order of the two")
             seen.add(frozenset(names))

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from lithofrac.config.platens import PlatensSection
 from lithofrac.config.scene import (
     Brazilian,
     Hole,
@@ -63,3 +64,26 @@ def _under_strip(scene: Punch) -> float:
     size = scene.fine_size + grown * (scene.element_size - scene.fine_size)
     strip = scene.strip_width * (scene.height - scene.block_height) / scene.fine_size**2
     return SHAPE * float(strip + scene.width * scene.block_height * np.mean(1 / size**2))
+
+
+def platen_count(scene: Scene, platens: PlatensSection) -> float:
+    """The same of all platens."""
+    count = 0.0
+    for length, size in _platen_faces(scene, platens.overhang):
+        edge = size * platens.element_size_over_rock
+        count += 2.0 * max(1.0, length / edge) * max(1.0, platens.thickness / edge)
+    return count
+
+
+def _platen_faces(scene: Scene, overhang: float) -> list[tuple[float, float]]:
+    """Length of the face of each platen and edge length of the rock before it [m]."""
+    size, over = scene.element_size, 2.0 * overhang
+    if isinstance(scene, Punch):
+        beside = (scene.fine_size + size) / 2
+        return [(scene.strip_width + over, scene.fine_size), *[(scene.block_height, beside)] * 2]
+    if isinstance(scene, Hole):
+        return [(scene.height + over, size)]
+    if isinstance(scene, Brazilian):
+        return [(scene.flat_width + over, size)] * 2
+    faces = [(scene.width + over, size)] * 2
+    return faces + [(scene.height, size)] * 2 if scene.lateral_platens else faces

@@ -10,9 +10,22 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
+MOST_SENTENCES = 50  # of one file; nobody reads more
+
 
 class ConfigError(ValueError):
     """Bad input; the message holds one sentence per mistake, one per line."""
+
+
+def one_line(text: object, most: int = 60) -> str:
+    """A text of anybody's as part of a sentence: on one line, not endless, nothing unprintable."""
+    line = printable(" ".join(str(text).split())[: 2 * most])
+    return line if len(line) <= most else f"{line[: most - 3]}..."
+
+
+def printable(text: str) -> str:
+    """The text with codes for what a terminal does not show, or obeys."""
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 def sentences(
@@ -27,19 +40,24 @@ def sentences(
     file_of : gives the file a key was read from, by the key's path
     """
     lines = []
-    for item in error.errors(include_url=False):
+    found = error.errors(include_url=False)
+    for item in found[:MOST_SENTENCES]:
         keys, section = _path(model, item["loc"])
-        said = _sentence(".".join(map(str, keys)), item, section)
+        said = _sentence(".".join(map(one_line, keys)), item, section)
         for line in said.split("\n"):
             named = keys or tuple(line.split(" ")[0].rstrip(":").split("."))
             lines.append(f"{file_of(named)}: {line}")
+    if len(found) > MOST_SENTENCES:
+        lines.append(f"{file_of(())}: and {len(found) - MOST_SENTENCES} more mistakes")
     return ConfigError("\n".join(dict.fromkeys(lines)))
 
 
 def suggestion(word: str, known: list[str]) -> str:
     """What to use instead of an unknown word: the nearest one, or the whole list."""
-    near = difflib.get_close_matches(str(word), known, n=1, cutoff=0.6)
-    return f"did you mean '{near[0]}'?" if near else f"expected one of: {', '.join(sorted(known))}"
+    near = difflib.get_close_matches(str(word)[:100], known, n=1, cutoff=0.6)
+    if near:
+        return f"did you mean '{one_line(near[0])}'?"
+    return f"expected one of: {one_line(', '.join(sorted(known)), 1000)}"
 
 
 def _sentence(key: str, item: dict, section: type[BaseModel] | None) -> str:
@@ -53,11 +71,12 @@ def _sentence(key: str, item: dict, section: type[BaseModel] | None) -> str:
         return f"{key}.kind: missing key, expected a text"
     if kind == "union_tag_invalid":
         known = [word.strip().strip("'") for word in context["expected_tags"].split(",")]
-        return f"{key}.kind = {context['tag']}: unknown kind, {suggestion(context['tag'], known)}"
+        tag = context["tag"]
+        return f"{key}.kind = {one_line(tag)}: unknown kind, {suggestion(tag, known)}"
     if kind == "value_error":
         return f"{key}: {context['error']}" if key else str(context["error"])
     value = item["input"]
-    shown = f"{key} = {value}" if isinstance(value, (bool, int, float, str)) else key
+    shown = f"{key} = {one_line(value)}" if isinstance(value, (bool, int, float, str)) else key
     if kind == "literal_error" and isinstance(value, str):
         return f"{shown}: unknown word, {suggestion(value, _words(context['expected']))}"
     field = section.model_fields.get(item["loc"][-1]) if section else None
@@ -110,6 +129,7 @@ def _expected(kind: str, context: dict) -> str:
         "int_from_float": "a whole number",
         "string_type": "a text",
         "bool_type": "true or false",
+        "date_type": "a date, as in 2026-01-31",
         "tuple_type": "a list",
         "list_type": "a list",
         "dict_type": "a mapping of keys",

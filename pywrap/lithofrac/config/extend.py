@@ -4,11 +4,12 @@ Mappings merge key by key, anything else is replaced. A mapping of another `kind
 one as a whole, because the keys of two kinds have nothing to do with each other.
 """
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from lithofrac.config.errors import ConfigError
+from lithofrac.config.errors import ConfigError, one_line
 from lithofrac.config.yaml_file import read_yaml
 
 ANY = "*"  # stands for every key of a mapping
@@ -103,11 +104,12 @@ def read_draft(path: Path, chain: tuple[Path, ...] = ()) -> Draft:
         if not isinstance(parent, str) or not parent:
             raise ConfigError(f"{path}: extends: expected a text, the file that is extended")
         chain = (*chain, path.resolve())
-        target = beside_or_below(parent, path.parent)
+        target, key = beside_or_below(parent, path.parent), f"extends = {one_line(parent)}"
+        if not os.path.exists(target):  # unlike pathlib, it takes any text
+            where = one_line(target, 200)
+            raise ConfigError(f"{path}: {key}: no such file, looked for {where}")
         if target.resolve() in chain:
-            raise ConfigError(f"{path}: extends = {parent}: the file extends itself")
-        if not target.exists():
-            raise ConfigError(f"{path}: extends = {parent}: no such file, looked for {target}")
+            raise ConfigError(f"{path}: {key}: the file extends itself")
         draft = read_draft(target, chain)
         draft.file = str(path)
     draft.put(values, str(path), path.parent)
@@ -117,7 +119,7 @@ def read_draft(path: Path, chain: tuple[Path, ...] = ()) -> Draft:
 def beside_or_below(name: str, folder: Path) -> Path:
     """Path that a config names: relative to `folder`; `.yaml` may be left out."""
     path = folder / name
-    return path if path.suffix in (".yaml", ".yml") else path.with_name(path.name + ".yaml")
+    return path if path.suffix in (".yaml", ".yml") else Path(f"{path}.yaml")
 
 
 def nested(values: Mapping) -> dict:

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 from lithofrac.config.base import MM
 from lithofrac.config.contact import PLATEN, ROCK
-from lithofrac.config.element_count import MOST_ELEMENTS, element_count
+from lithofrac.config.element_count import MOST_ELEMENTS, element_count, platen_count
 from lithofrac.config.gmsh_file import BoundaryLoading, GmshFile
 from lithofrac.config.loading import TractionLoading
 from lithofrac.config.material import Material
-from lithofrac.config.scene import SIZE_KEYS, Brazilian, Hole, PlaneStrain, Punch, Scene
+from lithofrac.config.scene import SIZE_KEYS, Brazilian, Hole, PlaneStrain, Punch
 
 if TYPE_CHECKING:
     from lithofrac.config.case import Case
@@ -29,7 +29,7 @@ def misfits(case: Case) -> list[str]:
         *_contact_problems(case),
         *_fracture_problems(case),
         *_size_problems(case),
-        *_count_problems(case.scene),
+        *_count_problems(case),
         *case.guards.problems(),
     ]
 
@@ -165,11 +165,20 @@ def _size_problems(case: Case) -> list[str]:
     return [f"scene.{key} = {getattr(case.scene, key):g}: {why}"] if why else []
 
 
-def _count_problems(scene: Scene) -> list[str]:
+def _count_problems(case: Case) -> list[str]:
     """Refuse meshes that would take hours or all memory, before gmsh is started."""
+    scene, platens = case.scene, case.platens
     count = element_count(scene)
     if count <= MOST_ELEMENTS:
-        return []
+        if platens is None or scene.kind not in WITH_PLATENS:
+            return []
+        count = platen_count(scene, platens)
+        if count <= MOST_ELEMENTS:
+            return []
+        return [
+            f"platens.element_size_over_rock = {platens.element_size_over_rock:g}: about "
+            f"{count:.2g} elements of platens, expected at most {MOST_ELEMENTS}"
+        ]
     key = FINEST_KEYS.get(scene.kind, "element_size_mm")
     return [
         f"scene.{key} = {getattr(scene, key):g}: about {count:.2g} elements, expected at most "

@@ -3,12 +3,14 @@
 Physical surfaces are bodies, physical curves are boundaries; both are named as in the file.
 """
 
+import os
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import Field, field_validator, model_validator
 
 from lithofrac.config.base import MM, Coordinate, Section, Speed, Traction
+from lithofrac.config.errors import one_line
 from lithofrac.config.material import Material
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}  # metres
@@ -37,9 +39,11 @@ class GmshFile(Section):
     def _there(cls, file: str) -> str:
         path = Path(file)
         if path.suffix not in (SCRIPT, MESH):
-            raise ValueError(f"{file}: expected a file that ends in {SCRIPT} or {MESH}")
-        if not path.is_file():
-            raise ValueError(f"{file}: no such file")
+            raise ValueError(
+                f"{one_line(file, 200)}: expected a file that ends in {SCRIPT} or {MESH}"
+            )
+        if not os.path.isfile(path):  # unlike pathlib, it takes any text
+            raise ValueError(f"{one_line(file, 200)}: no such file")
         return file
 
     @property

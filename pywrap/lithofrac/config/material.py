@@ -6,6 +6,7 @@ and dilation (eqs 6-8, Table 1), cut by three tension planes that soften over th
 below is the default.
 """
 
+import os
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal
@@ -26,7 +27,7 @@ from lithofrac.config.base import (
     Section,
     Strength,
 )
-from lithofrac.config.errors import ConfigError, sentences, suggestion
+from lithofrac.config.errors import ConfigError, one_line, sentences, suggestion
 from lithofrac.config.regularise import softening_onset, width_limit
 from lithofrac.config.yaml_file import read_yaml
 
@@ -276,10 +277,10 @@ def find_material(name: str | Path, beside: Path | None = None) -> Path:
     if beside is not None:
         folders[:0] = [beside / "materials", beside.parent / "materials"]
     for folder in folders:
-        if (folder / f"{text}.yaml").is_file():
+        if os.path.isfile(folder / f"{text}.yaml"):
             return folder / f"{text}.yaml"
     known = sorted({path.stem for folder in folders for path in folder.glob("*.yaml")})
-    raise ConfigError(f"material '{text}': no such material, {suggestion(text, known)}")
+    raise ConfigError(f"material '{one_line(text)}': no such material, {suggestion(text, known)}")
 
 
 def _listed(values: tuple) -> str:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from lithofrac.config import yaml_file
 from lithofrac.config.case import Case
-from lithofrac.config.errors import ConfigError
+from lithofrac.config.errors import ConfigError, one_line
 from lithofrac.config.gmsh_file import GmshFile
 
 
@@ -20,8 +20,8 @@ def settings(words: list[str]) -> dict:
     for word in words:
         key, equals, text = word.partition("=")
         if not key or not equals:
-            raise ConfigError(f"--set {word}: expected KEY=VALUE")
-        found[key.strip()] = yaml_file.parsed(text, f"--set {key}")
+            raise ConfigError(f"--set {one_line(word)}: expected KEY=VALUE")
+        found[key.strip()] = yaml_file.parsed(text, f"--set {one_line(key)}")
     return found
 
 

@@ -1,5 +1,6 @@
 """A study: one base case, the overrides that make its runs, what is read off them, and a figure."""
 
+import os
 import re
 from collections.abc import Mapping
 from itertools import product
@@ -10,13 +11,14 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from lithofrac.config.base import Section
 from lithofrac.config.case import Case, check_case
-from lithofrac.config.errors import ConfigError, sentences, suggestion
+from lithofrac.config.errors import ConfigError, one_line, sentences, suggestion
 from lithofrac.config.extend import beside_or_below, nested, read_draft
 from lithofrac.config.suite import SEED, Name
 from lithofrac.config.yaml_file import read_yaml
 
 MOST = 10_000  # runs of a study
 KEY_IN_NAME = re.compile(r"\{([^{}:]+)(?::([^{}]*))?\}")
+WIDE = re.compile(r"[0-9]{3}")  # digits of a format that asks for a megabyte of blanks
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*\Z")  # as that of a case of a suite
 
 
@@ -65,7 +67,7 @@ class Study(Section):
             raise ValueError("grid, cases: expected one of the two")
         if self.cases is not None and self.name is not None:
             raise ValueError(
-                f"name = {self.name}: expected no name beside cases, which have theirs"
+                f"name = {one_line(self.name)}: expected no name beside cases, which have theirs"
             )
         own = self._combined() if self.grid is not None else self.cases
         self._overrides.update({name: _leaves(nested(keys)) for name, keys in own.items()})
@@ -93,7 +95,7 @@ class Study(Section):
             if name is not None and name not in columns[key]:
                 what = "quantity" if key.startswith("y") else "column"
                 raise ValueError(
-                    f"plot.{key} = {name}: no such {what} of the study, "
+                    f"plot.{key} = {one_line(name)}: no such {what} of the study, "
                     f"{suggestion(name, columns[key])}"
                 )
         return self
@@ -129,8 +131,9 @@ class Study(Section):
             When the base is missing, or the case is wrong.
         """
         base, folder = beside_or_below(self.base, self._file.parent), self._file.parent
-        if not base.exists():
-            raise ConfigError(f"{self._file}: base = {self.base}: no such file, expected {base}")
+        if not os.path.exists(base):
+            key, there = f"base = {one_line(self.base)}", one_line(base, 200)
+            raise ConfigError(f"{self._file}: {key}: no such file, expected {there}")
         where = "grid" if self.grid is not None else f"cases.{_split(name)[0]}"
         draft = read_draft(base)
         draft.put(nested(self.set), f"{self._file}: set", folder)
@@ -153,8 +156,8 @@ class Study(Section):
             name = self._name_of(own)
             if name in found:
                 raise ValueError(
-                    f"name: two runs of the grid are called {name}, expected a name with all keys "
-                    f"and no value twice: {', '.join(self.grid)}"
+                    f"name: two runs of the grid are called {one_line(name)}, expected a name with "
+                    f"all keys and no value twice: {', '.join(self.grid)}"
                 )
             found[name] = own
             if len(found) > MOST:
@@ -163,23 +166,26 @@ class Study(Section):
 
     def _name_of(self, own: Mapping[str, Any]) -> str:
         pattern = self.name or "_".join(f"{key.split('.')[-1]}_{{{key}}}" for key in own)
+        said = f"name = {one_line(pattern)}"
 
         def filled(found: re.Match) -> str:
             key, form = found[1], found[2] or ""
             if key not in own:
                 known = suggestion(key, list(own))
-                raise ValueError(f"name = {pattern}: {{{key}}} is no key of the grid, {known}")
+                raise ValueError(f"{said}: {{{one_line(key)}}} is no key of the grid, {known}")
+            if WIDE.search(form):
+                raise ValueError(f"{said}: {one_line(found[0])}: expected a width below 100")
             try:
                 return format(own[key], form)
-            except ValueError as error:
-                raise ValueError(f"name = {pattern}: {found[0]}: {error}") from None
+            except (ValueError, OverflowError) as error:
+                raise ValueError(f"{said}: {one_line(found[0])}: {error}") from None
 
         name = KEY_IN_NAME.sub(filled, pattern)
         if self.name is None:  # made up here, so made fit for a folder too
             name = re.sub(r"[^A-Za-z0-9_.-]+", "-", name)
         if not NAME.match(name):
             raise ValueError(
-                f"name = {pattern}: gives {name!r}, expected letters, digits and any of _ . -"
+                f"{said}: gives {one_line(name)!r}, expected letters, digits and any of _ . -"
             )
         return name
 

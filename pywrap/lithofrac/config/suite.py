@@ -1,5 +1,6 @@
 """A suite: names of cases, the file each one extends, and the keys in which it differs."""
 
+import os
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,7 +10,7 @@ from pydantic import Field, PrivateAttr, StringConstraints, ValidationError, mod
 
 from lithofrac.config.base import Section
 from lithofrac.config.case import Case, check_case
-from lithofrac.config.errors import ConfigError, sentences, suggestion
+from lithofrac.config.errors import ConfigError, one_line, sentences, suggestion
 from lithofrac.config.extend import beside_or_below, nested, read_draft
 from lithofrac.config.material import PACKAGED
 from lithofrac.config.yaml_file import read_yaml
@@ -78,12 +79,13 @@ class Suite(Section):
         base = found["name"] if found else name
         if base not in self.cases:
             known = suggestion(base, list(self.cases))
-            raise ConfigError(f"{self._file}: cases.{base}: no such case, {known}")
+            raise ConfigError(f"{self._file}: cases.{one_line(base)}: no such case, {known}")
         entry = self.cases[base]
-        here = f"{self._file}: cases.{base}"
+        here = f"{self._file}: cases.{one_line(base)}"
         path = beside_or_below(entry.extends, self._file.parent)
-        if not path.exists():
-            raise ConfigError(f"{here}.extends = {entry.extends}: no such file, expected {path}")
+        if not os.path.exists(path):
+            key, where = f"extends = {one_line(entry.extends)}", one_line(path, 200)
+            raise ConfigError(f"{here}.{key}: no such file, expected {where}")
         draft = read_draft(path)
         draft.put(nested(entry.set), f"{here}.set", self._file.parent)
         seed = {"mesh": {"seed": int(found["seed"])}} if found else {}
@@ -128,7 +130,7 @@ def find_case(name: str, suite: Path | None = None, overrides: Mapping | None = 
     ConfigError
         When there is no such case, or it is wrong.
     """
-    if name.endswith((".yaml", ".yml")) or Path(name).exists():
+    if name.endswith((".yaml", ".yml")) or os.path.exists(name):
         draft = read_draft(Path(name))
         draft.put(nested(overrides or {}), "command line", Path())
         return check_case(draft)

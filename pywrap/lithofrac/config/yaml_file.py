@@ -3,6 +3,7 @@
 The loader builds no objects (safe), refuses a key that stands twice in one mapping, and takes for
 numbers what the core schema of YAML 1.2 does (section 10.3.2), in decimal: `1e-3` and `1.e3` are
 numbers and `010` is ten. In YAML 1.1 these are a text, a text and eight, and `1:30` is ninety.
+Aliases are refused: a few lines of them unfold to more than any machine holds.
 """
 
 import re
@@ -11,8 +12,9 @@ from typing import Any
 
 import yaml
 
-from lithofrac.config.errors import ConfigError
+from lithofrac.config.errors import ConfigError, one_line
 
+MOST_BYTES = 1_000_000  # of a file; cases and materials have some thousands
 INT, FLOAT = "tag:yaml.org,2002:int", "tag:yaml.org,2002:float"
 NUMBERS = {
     INT: re.compile(r"[-+]?[0-9]+\Z"),
@@ -21,6 +23,11 @@ NUMBERS = {
         r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))\Z"
     ),
 }  # in the order in which they are tried
+# What PyYAML raises: at tags with the wrong content, such as `!!bool maybe`, or at deep nesting.
+MISREAD = (
+    yaml.YAMLError, ValueError, RecursionError, LookupError, AttributeError, TypeError,
+    ArithmeticError,
+)  # fmt: skip
 
 
 def _resolvers() -> dict:
@@ -35,15 +42,24 @@ def _resolvers() -> dict:
 
 
 class _Loader(yaml.SafeLoader):
-    """The safe loader with unique keys and numbers as in YAML 1.2."""
+    """The safe loader with unique keys, numbers as in YAML 1.2 and no aliases."""
 
     yaml_implicit_resolvers = _resolvers()
+
+    def compose_node(self, parent, index):
+        if self.check_event(yaml.events.AliasEvent):
+            mark = self.peek_event().start_mark
+            raise yaml.composer.ComposerError(None, None, "aliases are not taken", mark)
+        return super().compose_node(parent, index)
 
 
 class _Dumper(yaml.SafeDumper):
-    """Quotes the texts that `_Loader` would take for numbers."""
+    """Quotes the texts that `_Loader` would take for numbers, and writes no aliases."""
 
     yaml_implicit_resolvers = _resolvers()
+
+    def ignore_aliases(self, data) -> bool:
+        return True
 
 
 def _decimal(loader: _Loader, node: yaml.ScalarNode) -> int:
@@ -79,21 +95,15 @@ def read_yaml(path: Path) -> dict:
     Raises
     ------
     ConfigError
-        When there is no such file, it is not a file, not UTF-8, not YAML, empty, no mapping, or
-        holds a key twice.
+        When there is no such file, it is not a file, too large, not UTF-8, not YAML, empty, no
+        mapping, or holds a key twice.
     """
     try:
-        text = Path(path).read_bytes().decode("utf-8")
-    except FileNotFoundError:
-        raise ConfigError(f"{path}: no such file") from None
-    except IsADirectoryError:
-        raise ConfigError(f"{path}: is a directory, expected a YAML file") from None
+        text = _content(Path(path)).decode("utf-8")
     except UnicodeDecodeError as error:
         raise ConfigError(
             f"{path}: byte {error.start} is not UTF-8, expected a YAML file in UTF-8"
         ) from None
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be read ({error.strerror})") from None
     values = parsed(text, str(path))
     if values is None:
         raise ConfigError(f"{path}: file is empty, expected a YAML mapping")
@@ -102,6 +112,24 @@ def read_yaml(path: Path) -> dict:
             f"{path}: holds a {type(values).__name__}, expected a YAML mapping of keys"
         )
     return values
+
+
+def _content(path: Path) -> bytes:
+    """All bytes of a regular file; a device or pipe might never end."""
+    try:
+        if path.is_dir():
+            raise ConfigError(f"{path}: is a directory, expected a YAML file")
+        if not path.exists():
+            raise ConfigError(f"{path}: no such file")
+        if not path.is_file():
+            raise ConfigError(f"{path}: is no regular file, expected a YAML file")
+        with open(path, "rb") as file:
+            content = file.read(MOST_BYTES + 1)
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read ({error.strerror})") from None
+    if len(content) > MOST_BYTES:
+        raise ConfigError(f"{path}: is larger than {MOST_BYTES} bytes, expected a YAML file")
+    return content
 
 
 def parsed(text: str, file: str) -> Any:
@@ -117,7 +145,7 @@ def parsed(text: str, file: str) -> Any:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         where = f" line {mark.line + 1}, column {mark.column + 1}:" if mark else ""
-        raise ConfigError(f"{file}:{where} {error.problem}") from None
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        reason = " ".join(str(error).split())
+        raise ConfigError(f"{file}:{where} {one_line(error.problem, 200)}") from None
+    except MISREAD as error:
+        reason = one_line(str(error), 200) or type(error).__name__
         raise ConfigError(f"{file}: not valid YAML ({reason})") from None

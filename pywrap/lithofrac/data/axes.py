@@ -1,10 +1,13 @@
 """Axes of the paper's figures: quantity, unit and printed range (`figure_axes.csv`)."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
 
+from lithofrac.config.errors import one_line
+from lithofrac.data.csv_file import read_columns
 from lithofrac.data.errors import DataError
 
 FACTORS = {
@@ -13,6 +16,7 @@ FACTORS = {
     "MPa": {"Pa": 1e-6, "kPa": 1e-3, "MPa": 1.0, "GPa": 1e3},
     "mm": {"mm": 1.0, "cm": 10.0, "m": 1e3},
 }  # unit of an axis -> unit of a file -> factor
+COLUMNS = ("figure", "axis", "quantity", "unit", "printed_min", "printed_max")
 
 
 @dataclass(frozen=True)
@@ -26,13 +30,40 @@ class Axis:
 
 
 def load_axes(path: Path) -> dict[str, dict[str, Axis]]:
-    """Read the axes of all figures: figure -> "x" or "y" -> `Axis`."""
-    try:
-        rows = pd.read_csv(path, dtype={"figure": str, "unit": str})
-    except FileNotFoundError:
-        raise DataError(f"{path}: no such file, expected the axes of the figures") from None
+    """Read the axes of all figures: figure -> "x" and "y" -> `Axis`.
+
+    Raises
+    ------
+    DataError
+        One sentence on the first thing that is wrong.
+    """
+    rows = read_columns(path, COLUMNS, "the axes of the figures", dtype=str)
     axes: dict[str, dict[str, Axis]] = {}
-    for row in rows.itertuples():
-        low, high = (None if pd.isna(v) else float(v) for v in (row.printed_min, row.printed_max))
-        axes.setdefault(row.figure, {})[row.axis] = Axis(row.quantity, row.unit, low, high)
+    for line, row in enumerate(rows.itertuples(), start=2):
+        where = f"{path}: line {line}"
+        if row.axis not in ("x", "y"):
+            raise DataError(f"{where}: axis {one_line(row.axis)!r}, expected x or y")
+        if row.unit not in FACTORS:
+            raise DataError(
+                f"{where}: unit {one_line(row.unit)!r}, expected one of {', '.join(FACTORS)}"
+            )
+        low, high = (_number(value, where) for value in (row.printed_min, row.printed_max))
+        axis = Axis(str(row.quantity), row.unit, low, high)
+        axes.setdefault(str(row.figure), {})[row.axis] = axis
+    for figure, pair in axes.items():
+        if set(pair) != {"x", "y"}:
+            raise DataError(f"{path}: figure {one_line(figure)!r} has one axis, expected x and y")
     return axes
+
+
+def _number(text: str, where: str) -> float | None:
+    """A number, or None where the cell is empty."""
+    if pd.isna(text):
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise DataError(f"{where}: {one_line(text)!r}, expected a finite number or nothing")
+    return value

@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import Field, ValidationError, field_validator
 
 from lithofrac.config.base import NonNegative, Section
-from lithofrac.config.errors import ConfigError, sentences
+from lithofrac.config.errors import ConfigError, one_line, sentences
 from lithofrac.config.yaml_file import read_yaml
 from lithofrac.data.axes import FACTORS, Axis, load_axes
 from lithofrac.data.errors import DataError
@@ -102,7 +102,7 @@ def _load(path: Path, axes: dict[str, dict[str, Axis]]) -> Curve:
     sheet = _read_sheet(path)
     if sheet.figure not in axes:
         raise DataError(
-            f"{path}: figure: {sheet.figure!r}, expected one of {', '.join(sorted(axes))}"
+            f"{path}: figure: {one_line(sheet.figure)!r}, expected one of {', '.join(sorted(axes))}"
         )
     points = _read_points(path.with_suffix(".csv"))
     columns, errors = [], []
@@ -139,10 +139,10 @@ def _read_points(path: Path) -> np.ndarray:
             x, y = (float(word) for word in line.split(","))
         except ValueError:
             raise DataError(
-                f"{path}: line {number}: {line.strip()!r}, expected two numbers parted by a comma"
+                f"{path}: line {number}: {one_line(line)!r}, expected two numbers parted by a comma"
             ) from None
         if not np.isfinite([x, y]).all():
-            raise DataError(f"{path}: line {number}: {line.strip()!r}, expected finite numbers")
+            raise DataError(f"{path}: line {number}: {one_line(line)!r}, expected finite numbers")
         points.append((x, y))
     if not points:
         raise DataError(f"{path}: holds no points, expected two numbers a line")
@@ -154,7 +154,7 @@ def _factor(path: Path, name: str, given: AxisSheet, axis: Axis) -> float:
     known = FACTORS[axis.unit]
     if given.unit not in known:
         raise DataError(
-            f"{path}: {name}.unit: {given.unit!r}, expected one of {', '.join(known)}"
+            f"{path}: {name}.unit: {one_line(given.unit)!r}, expected one of {', '.join(known)}"
             f" ({axis.quantity})"
         )
     return known[given.unit]
@@ -179,7 +179,7 @@ def _check_range(path: Path, name: str, values: np.ndarray, given: AxisSheet, ax
             )
         limits[end] = limit
     low, high = limits["printed_min"], limits["printed_max"]
-    if not low < high:
+    if not (low < high and np.isfinite([low, high]).all()):
         raise DataError(
             f"{path}: {name}.printed_max: {high:g} {axis.unit}, expected more than"
             f" {name}.printed_min, {low:g} {axis.unit}"

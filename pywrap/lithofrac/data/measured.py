@@ -5,6 +5,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from lithofrac.config.errors import one_line
+from lithofrac.data.csv_file import read_columns
 from lithofrac.data.errors import DataError
 
 COLUMNS = ("confinement_MPa", "strength_MPa")
@@ -29,24 +31,15 @@ def measured_strength(data: Path, source: str) -> pd.DataFrame:
         When the file is missing, lacks a column, or holds anything but finite numbers.
     """
     path = data / source / "triaxial_strength.csv"
-    try:
-        table = pd.read_csv(path)
-    except FileNotFoundError:
-        raise DataError(f"{path}: no such file, expected measured strengths") from None
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
-        raise DataError(f"{path}: not a CSV file ({error})") from None
-    for column in COLUMNS:
-        if column not in table:
-            raise DataError(
-                f"{path}: column '{column}' is missing, expected {', '.join(COLUMNS)} at least"
-            )
+    table = read_columns(path, COLUMNS, "measured strengths")
     for column in table:
         values = pd.to_numeric(table[column], errors="coerce")
         bad = ~np.isfinite(values)
         if bad.any():
             row = int(np.argmax(bad))
+            value = one_line(table[column].iloc[row])
             raise DataError(
-                f"{path}: line {row + 2}, column '{column}': '{table[column].iloc[row]}',"
-                " expected a finite number"
+                f"{path}: line {row + 2}, column '{one_line(column)}': '{value}', expected a finite"
+                " number"
             )
     return table

@@ -11,13 +11,14 @@ curves : `confinement_MPa`, `axial_strain`, `axial_stress_MPa` (not the differen
     row a point, in the order of loading
 """
 
+import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from lithofrac.config.errors import suggestion
+from lithofrac.config.errors import one_line, suggestion
 from lithofrac.data.errors import DataError
 
 STRENGTHS = ("confinement_MPa", "strength_MPa")
@@ -73,22 +74,25 @@ def _tests_of(path: Path) -> list[Triaxial]:
     names = numbers["confinement_MPa"].map("{:g} MPa".format)
     names = table["test"].fillna("") if "test" in table else names
     order = dict.fromkeys(names)
-    return [_curve(path, str(name), numbers[names == name]) for name in order]
+    return [_curve(path, one_line(name), numbers[names == name]) for name in order]
 
 
 def _read(path: Path) -> pd.DataFrame:
     """Cells as texts; the index is the line of the file less 2."""
     try:
-        table = pd.read_csv(
-            path, dtype=str, skip_blank_lines=False, skipinitialspace=True, index_col=False
-        )
+        with warnings.catch_warnings():  # pandas warns of cells that it leaves out
+            warnings.simplefilter("error", pd.errors.ParserWarning)
+            table = pd.read_csv(
+                path, dtype=str, skip_blank_lines=False, skipinitialspace=True, index_col=False
+            )
     except FileNotFoundError:
         raise DataError(f"{path}: no such file, expected triaxial tests as CSV") from None
     except IsADirectoryError:
         raise DataError(f"{path}: is a folder, expected triaxial tests as CSV") from None
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
-        reason = " ".join(str(error).split())
-        raise DataError(f"{path}: not a CSV file ({reason})") from None
+    except pd.errors.ParserWarning:
+        raise DataError(f"{path}: has rows of more cells than headings, expected as many") from None
+    except (ValueError, OverflowError) as error:  # ParserError, EmptyDataError, not UTF-8
+        raise DataError(f"{path}: not a CSV file ({one_line(error, 200)})") from None
     table = table.rename(columns=lambda name: str(name).strip()).dropna(how="all")
     if table.empty:
         raise DataError(f"{path}: holds no rows, expected one a test or one a point of a curve")
@@ -105,7 +109,7 @@ def _check_columns(path: Path, table: pd.DataFrame, needed: tuple, beside: tuple
     for column in table:
         if column not in (*needed, *beside):
             near = suggestion(column, [*needed, *beside])
-            raise DataError(f"{path}: column '{column}': unknown, {near}")
+            raise DataError(f"{path}: column '{one_line(column)}': unknown, {near}")
     if {"lateral_strain", "volumetric_strain"} <= set(table):
         raise DataError(
             f"{path}: column 'volumetric_strain': stands beside lateral_strain, expected one"
@@ -120,11 +124,11 @@ def _numbers(path: Path, table: pd.DataFrame) -> pd.DataFrame:
         bad = ~found[column].between(low, high)  # also NaN
         if bad.any():
             line = bad.idxmax()
-            shown = table[column][line]
+            shown = "" if pd.isna(table[column][line]) else one_line(table[column][line])
             fraction = " (a fraction, not percent)" if "strain" in column else ""
             raise DataError(
-                f"{path}: line {line + 2}, column '{column}': '{'' if pd.isna(shown) else shown}',"
-                f" expected a number from {low:g} to {high:g}{fraction}"
+                f"{path}: line {line + 2}, column '{column}': '{shown}', expected"
+                f" a number from {low:g} to {high:g}{fraction}"
             )
     return found
 

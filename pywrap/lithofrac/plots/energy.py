@@ -27,6 +27,7 @@ SMALL = (
     ("insertion_J", "crack insertion", style.SKY, "-"),
     ("contact_J", "contact pressure", style.BLACK, "-"),
     ("relump_J", "mass lumping", style.RED, "--"),
+    ("turning_J", "turns of a step", style.BLUE, ":"),
     ("reset_J", "state reset,\nno part of the sum", style.ORANGE, ":"),
 )
 DECADES = 1e-9  # of the largest energy: what lies below is not shown

@@ -11,13 +11,14 @@ from lithofrac.data import DataError
 from lithofrac.plots import style
 
 STYLES = {
-    "one element": (style.GREY, "D", "one free element"),
-    "continuum": (style.BLUE, "o", "continuum"),
-    "contact": (style.ORANGE, "s", "contact"),
-    "cracked": (style.RED, "^", "cracked: every edge cut"),
+    "one element": (style.GREY, "D", "-", "one free element"),
+    "continuum": (style.BLUE, "o", "-", "continuum"),
+    "contact": (style.ORANGE, "s", "--", "contact"),
+    "cracked": (style.RED, "^", "-", "cracked (a: every edge cut)"),
 }
 OFFSETS = {"continuum": -0.22, "contact": 0.0, "cracked": 0.22}  # rows of the margins
 CEILING = 1e6  # of the energy that is drawn
+TICKS = (1, 1.5, 2, 3, 5, 10, 20, 30)
 DEFAULT = 0.9  # time step factor of a case
 
 
@@ -40,12 +41,12 @@ def figure(inputs: list[Path], data: Path) -> Figure:
 
 def _draw_curves(panel: Axes, table: pd.DataFrame) -> None:
     """Energy of each mesh; runs that broke stand on the upper edge."""
-    for mesh, (colour, marker, words) in STYLES.items():
+    for mesh, (colour, marker, line, words) in STYLES.items():
         own = table[table["mesh"] == mesh].sort_values("time_step_factor")
         broke = own["broke"].astype(str) == "True"
         energy = own["internal_over_put_in"].where(~broke, CEILING).clip(upper=CEILING)
         panel.semilogy(
-            own["time_step_factor"], energy, color=colour, marker=marker, ms=3.5, label=words
+            own["time_step_factor"], energy, line, color=colour, marker=marker, ms=3.5, label=words
         )
     factor = np.linspace(0.05, 0.999, 400)
     panel.semilogy(factor, 1.0 / (1.0 - factor**2), ":", color=style.BLACK, lw=1.0)
@@ -69,11 +70,13 @@ def _draw_margins(panel: Axes, table: pd.DataFrame) -> None:
     for mesh, offset in OFFSETS.items():
         own = table[table["mesh"] == mesh]
         rows = [families.index(family) + offset for family in own["family"]]
-        colour, marker, _ = STYLES[mesh]
-        panel.plot(own["margin"], rows, marker, color=colour, ms=3.5, alpha=0.8)
+        colour, marker, *_ = STYLES[mesh]
+        panel.semilogx(own["margin"], rows, marker, color=colour, ms=3.5, alpha=0.8)
     _mark_limits(panel.axvline)
     panel.set_yticks(range(len(families)), families)
     panel.set_ylim(len(families) - 0.4, -0.6)
+    panel.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
+    panel.minorticks_off()
     panel.set(
         xlabel="time step factor at which it breaks [-]",
         title="b  Margin of every cell",

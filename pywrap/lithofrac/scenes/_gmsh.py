@@ -16,11 +16,15 @@ from pathlib import Path
 import meshio
 import numpy as np
 
+from lithofrac.config.errors import one_line
+
 # What meshio raises: at files without elements, cut off, or of anything else.
 MISREAD = (
     meshio.ReadError, ArithmeticError, AssertionError, LookupError, MemoryError, TypeError,
     ValueError,
 )  # fmt: skip
+NOT_CLOSED = "not closed by"  # words of meshio on a section without an end
+FORMATS = "Gmsh's format 2.2 or 4.1"
 NAMED = "'scene.geo', "  # gmsh names its own copy of the text
 TIME_LIMIT = 600.0  # seconds; meshes of the suite take less than one
 
@@ -106,12 +110,16 @@ def read(path: Path) -> meshio.Mesh:
     GeoError
         When meshio cannot.
     """
+    said = io.StringIO()  # meshio prints empty lines, and goes on after a lost end
     try:
-        with contextlib.redirect_stdout(io.StringIO()):  # meshio prints empty lines
-            return meshio.gmsh.read(path)
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            found = meshio.gmsh.read(path)
+        if NOT_CLOSED in said.getvalue():
+            raise meshio.ReadError(said.getvalue().removeprefix("Warning: "))
     except MISREAD as error:
-        words = str(error).strip().splitlines() or [type(error).__name__]
-        raise GeoError(f"no mesh that can be read: {words[0]}") from None
+        words = one_line(error, 150) or type(error).__name__
+        raise GeoError(f"no mesh that can be read, expected {FORMATS} ({words})") from None
+    return found
 
 
 def _gmsh() -> list[str]:

@@ -10,6 +10,7 @@ from lithofrac.scenes._gmsh import RawMesh
 
 KINDS = {1: "curve", 2: "surface"}  # dimension -> words
 TYPES = {"line": 1, "triangle": 2}  # that are used; a vertex is nobody's boundary
+FARTHEST = 1e12  # units of length; beyond, areas overflow
 FLAT = 1e-9  # of the extent: z of a plane mesh
 
 
@@ -81,6 +82,8 @@ def _wrong_types(read: meshio.Mesh) -> str:
 def _wrong_plane(read: meshio.Mesh) -> str:
     if not np.isfinite(read.points).all():
         return "holds nodes at no place, expected numbers"
+    if np.abs(read.points).max() > FARTHEST:
+        return f"holds a node at {np.abs(read.points).max():g}, expected at most {FARTHEST:g}"
     z, extent = read.points[:, 2], np.ptp(read.points, axis=0).max()
     if np.abs(z).max() > FLAT * extent:
         return f"reaches from z = {z.min():g} to {z.max():g}, expected the plane z = 0"

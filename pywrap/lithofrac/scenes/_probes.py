@@ -4,7 +4,7 @@ import numpy as np
 
 from lithofrac.config.base import MM
 from lithofrac.config.case import Case
-from lithofrac.config.errors import ConfigError
+from lithofrac.config.errors import ConfigError, one_line
 from lithofrac.problem import Mesh
 
 
@@ -29,8 +29,9 @@ def probes(case: Case, mesh: Mesh, own: dict[str, tuple[float, float]]) -> dict[
         away, size = _distance(corners, np.array(point))
         if away > size:
             x, y = (f"{value / MM:g}" for value in point)
+            where = f"probes.{one_line(name)} = ({x}, {y}) mm"
             raise ConfigError(
-                f"probes.{name} = ({x}, {y}) mm: lies {away / MM:.3g} mm outside of the body, "
+                f"{where}: lies {away / MM:.3g} mm outside of the body, "
                 f"expected at most one element, {size / MM:.3g} mm"
             )
         found[name] = element

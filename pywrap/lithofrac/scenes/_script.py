@@ -7,8 +7,8 @@ included, so that no way of quoting hides one. Do not run scripts that you have 
 import re
 
 COMMANDS = (
-    "System", "SystemCall", "NonBlockingSystemCall", "OnelabRun", "ExternalProcess",
-    "CommandLine", "Plugin", "Solver", "General",
+    "System", "SystemCall", "NonBlockingSystemCall", "OnelabRun", "OnelabAction", "ExternalProcess",
+    "CommandLine", "Plugin", "Solver", "General", "GmshOption",
 )  # fmt: skip
 FILES = (
     "Include", "Merge", "MergeWithBoundingBox", "ShapeFromFile", "Structured", "FileName",

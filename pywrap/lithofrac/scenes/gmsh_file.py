@@ -8,6 +8,7 @@ from lithofrac.config.base import MM, MPA
 from lithofrac.config.case import Case
 from lithofrac.config.errors import ConfigError, suggestion
 from lithofrac.config.gmsh_file import SCRIPT, BoundaryLoading
+from lithofrac.mesh_flaws import flaw
 from lithofrac.problem import Measures, Mesh, PressureLoad, Problem, Ramp, VelocityLoad
 from lithofrac.scenes._common import settings
 from lithofrac.scenes._finish import finished
@@ -48,7 +49,11 @@ def mesh(case: Case, seed: int) -> Mesh:
         raise ConfigError(f"{named}: {error}") from None
     raw = groups(found, named)
     nodes = raw.nodes * scene.unit
-    return finished(nodes, raw.triangles, raw.lines, raw.body, raw.body_names)
+    made = finished(nodes, raw.triangles, raw.lines, raw.body, raw.body_names)
+    wrong = flaw(made.nodes, made.triangles, made.body, made.body_names, made.edge_sets)
+    if wrong:
+        raise ConfigError(f"{named}: {wrong}")
+    return made
 
 
 def _script(text: str, seed: int, named: str) -> str:

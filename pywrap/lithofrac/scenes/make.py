@@ -17,6 +17,7 @@ from lithofrac.scenes import (
     single_element,
     triaxial,
 )
+from lithofrac.scenes._fit import misfit, unmerged
 
 SCENES = {
     "single_element": single_element,
@@ -52,15 +53,21 @@ def make_problem(case: Case, mesh: Mesh) -> Problem:
     Raises
     ------
     ConfigError
-        When the largest element of the rock is above a limit of unique softening (eq. 16, or a
-        stretched hardening table).
+        When the mesh is of another case, or the largest element of the rock is above a limit of
+        unique softening (eq. 16, or a stretched hardening table).
     """
+    why = misfit(case, mesh)
+    if why:
+        raise ConfigError(why)
     problem = SCENES[case.scene.kind].problem(case, mesh)
     for number, (body, material) in enumerate(zip(mesh.body_names, problem.materials, strict=True)):
         width = float(material.band_width_of(mesh.areas()[mesh.body == number].max()))
         why = too_large(material, width)
         if why:
             raise ConfigError(f"{_size_key(case, body)}: {why}")
+    why = unmerged(mesh) if case.contact is None else ""
+    if why:
+        raise ConfigError(why)
     return problem
 
 

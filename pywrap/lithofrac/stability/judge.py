@@ -67,12 +67,7 @@ class Seen:
 def judge(cell: Cell) -> dict:
     """A row of the table; see `COLUMNS`."""
     start = time.perf_counter()
-    row = dict.fromkeys(COLUMNS) | {
-        "family": cell.family,
-        "extreme": cell.extreme,
-        "mesh": cell.mesh,
-        "note": "",
-    }
+    row = _blank(cell)
     expected = cell.expected
     if isinstance(expected, Left):
         row |= {"verdict": "n/a", "note": expected.reason}
@@ -83,6 +78,20 @@ def judge(cell: Cell) -> dict:
     else:
         row |= _stable(expected)
     return row | {"seconds": time.perf_counter() - start}
+
+
+def lost(cell: Cell) -> dict:
+    """A row of a cell whose process died."""
+    return _blank(cell) | {
+        "verdict": "lost",
+        "note": "its process died, or that of another cell before it was tried",
+        "seconds": 0.0,
+    }
+
+
+def _blank(cell: Cell) -> dict:
+    said = {"family": cell.family, "extreme": cell.extreme, "mesh": cell.mesh, "note": ""}
+    return dict.fromkeys(COLUMNS) | said
 
 
 def _refused(expected: Refused) -> dict:

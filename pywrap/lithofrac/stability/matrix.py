@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
 import pandas as pd
@@ -12,7 +13,7 @@ import pandas as pd
 from lithofrac.config.errors import ConfigError
 from lithofrac.results.files import write_table, write_whole
 from lithofrac.stability.families import FAMILIES, cells_of
-from lithofrac.stability.judge import COLUMNS, judge
+from lithofrac.stability.judge import COLUMNS, judge, lost
 from lithofrac.stability.limit import FACTORS, MESHES, point_of
 from lithofrac.stability.summary import by_family
 
@@ -57,7 +58,12 @@ def make_matrix(
         jobs |= {pool.submit(point_of, *point): point for point in points}
         for job in as_completed(jobs):
             key = jobs[job]
-            rows[key] = job.result()
+            try:
+                rows[key] = job.result()
+            except BrokenProcessPool:  # a crash of the core takes all that wait with it
+                if not isinstance(key, int):
+                    raise
+                rows[key] = lost(cells[key])
             if isinstance(key, int):
                 say(f"{rows[key]['verdict']:<8}{rows[key]['seconds']:6.1f} s  {cells[key].name}")
     table = pd.DataFrame([rows[i] for i in range(len(cells))], columns=list(COLUMNS))

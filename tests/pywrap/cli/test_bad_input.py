@@ -12,22 +12,6 @@ TRIAXIAL = Path("configs/cases/sandstone_triaxial.yaml").read_text()
 ROCK = Path("configs/materials/sandstone.yaml").read_text()
 
 
-@pytest.fixture
-def refused(tmp_path, capsys):
-    """refused(path, *options): what `lithofrac run` says, after checking that it did nothing."""
-
-    def attempt(path, *options):
-        out = tmp_path / "results"
-        before = sorted(tmp_path.rglob("*"))
-        assert main(["run", str(path), "--out", str(out), *options]) == 2
-        assert sorted(tmp_path.rglob("*")) == before
-        said = capsys.readouterr()
-        assert said.out == ""
-        return said.err
-
-    return attempt
-
-
 def changed(text: str, old: str, new: str) -> str:
     assert old in text
     return text.replace(old, new, 1)
@@ -191,6 +175,13 @@ def test_meshes_that_no_machine_holds(refused, case, key, value):
     said = refused(case, "--set", f"{key}={value}", *far)
     assert said.startswith(f"lithofrac: command line: {key} = {value}: about ")
     assert said.endswith(" elements, expected at most 2000000\n")
+
+
+def test_platens_that_no_machine_holds(refused):
+    assert refused("punch_gf60", "--set", "platens.thickness_mm=1e7") == (
+        "lithofrac: configs/cases/punch.yaml: platens.element_size_over_rock = 2: about 1.9e+08 "
+        "elements of platens, expected at most 2000000\n"
+    )
 
 
 @pytest.mark.parametrize(

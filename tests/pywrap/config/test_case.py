@@ -81,8 +81,9 @@ def test_command_line_words_are_read_as_yaml():
         ),
         (
             {"velocity": 1},
-            "velocity: unknown key, expected one of: contact, damping, fracture, guards, "
-            "loading, material, mesh, output, platens, probes, scene, time_step_factor, title",
+            "velocity: unknown key, expected one of: budget_element_steps, contact, damping, "
+            "fracture, guards, loading, material, mesh, output, platens, probes, scene, "
+            "time_step_factor, title",
         ),
         ({"loading.speed_m_s": "fast"}, "loading.speed_m_s = fast: expected a number"),
         (
@@ -171,6 +172,10 @@ def test_files_that_extend_themselves_or_nothing_are_refused(tmp_path):
     assert refusal(a) == f"{b}: extends = a: the file extends itself"
     a.write_text("extends: c\n")
     assert refusal(a) == f"{a}: extends = c: no such file, looked for {tmp_path / 'c.yaml'}"
+    a.write_text("extends: /\n")
+    assert refusal(a) == f"{a}: extends = /: no such file, looked for /.yaml"
+    a.write_text('extends: "b\\0c"\n')
+    assert refusal(a).startswith(f"{a}: extends = b\\x00c: no such file, looked for ")
     a.write_text("extends: 3\n")
     assert refusal(a) == f"{a}: extends: expected a text, the file that is extended"
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lithofrac.config import find_case
-from lithofrac.config.element_count import element_count
+from lithofrac.config.element_count import element_count, platen_count
 from lithofrac.scenes import make_mesh
 
 pytestmark = pytest.mark.no_core
@@ -31,3 +31,6 @@ def test_the_estimate_is_that_of_the_mesh(name, overrides):
     mesh = make_mesh(case)
     made = np.count_nonzero(mesh.body == mesh.body_names.index("rock"))
     assert element_count(case.scene) == pytest.approx(made, rel=0.25)
+    if case.platens is not None:
+        others = len(mesh.triangles) - made
+        assert platen_count(case.scene, case.platens) == pytest.approx(others, rel=0.25)

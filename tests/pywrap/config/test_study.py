@@ -64,6 +64,12 @@ def test_a_name_takes_keys_and_formats(study_of):
     assert study_of("quantities", name).names == ["p00_h0.5", "p00_h1.0", "p05_h0.5", "p05_h1.0"]
 
 
+def test_a_number_that_no_format_takes_is_refused(study_of):
+    name = "name: p{loading.confinement_MPa:.1f}\nquantities"
+    with pytest.raises(ConfigError, match=r"MPa:\.1f\}: int too large to convert to float$"):
+        study_of("quantities", name, "[0, 5]", f"[1{'0' * 400}]")
+
+
 def test_realisations_are_other_meshes(study_of):
     study = study_of(
         "quantities", "realisations: 2\nquantities", "[0, 5]", "[5]", "[0.5, 1]", "[1]"
@@ -117,6 +123,18 @@ GRID = "grid: {loading.confinement_MPa: [0, 5], scene.element_size_mm: [0.5, 1]}
             "name: two runs of the grid are called confinement_MPa_5_element_size_mm_0.5, expected "
             "a name with all keys and no value twice: "
             "loading.confinement_MPa, scene.element_size_mm",
+        ),
+        (
+            "quantities",
+            "name: p{loading.confinement_MPa:0999999999}\nquantities",
+            "name = p{loading.confinement_MPa:0999999999}: {loading.confinement_MPa:0999999999}: "
+            "expected a width below 100",
+        ),
+        (
+            "quantities",
+            "name: ../p{loading.confinement_MPa}\nquantities",
+            "name = ../p{loading.confinement_MPa}: gives '../p0', expected letters, digits and any "
+            "of _ . -",
         ),
         (
             "quantities",

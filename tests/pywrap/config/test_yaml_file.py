@@ -81,6 +81,28 @@ def test_a_missing_file_and_a_folder_are_refused(file):
     assert refusal(file.parent) == f"{file.parent}: is a directory, expected a YAML file"
 
 
+@pytest.mark.parametrize(
+    "tag", ["!!bool maybe", "!!float ''", "!!int ''", "!!timestamp x", "!!binary 1", "!!set [a]"]
+)
+def test_a_tag_with_the_wrong_content_is_refused_in_a_sentence(file, tag):
+    file.write_text(f"a: {tag}\n")
+    said = refusal(file)
+    assert said.startswith(f"{file}: ")
+    assert "\n" not in said
+
+
+def test_a_text_that_unfolds_without_end_is_refused(file):
+    lines = ["a0: &a0 [x, x]"]
+    lines += [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 9)}]" for i in range(1, 12)]
+    file.write_text("\n".join(lines))
+    assert refusal(file) == f"{file}: line 2, column 10: aliases are not taken"
+
+
+def test_what_is_written_holds_no_aliases():
+    same = [1.5, 2.5]
+    assert parsed(text_of({"a": same, "b": same}), "a") == {"a": same, "b": same}
+
+
 def test_no_objects_are_built(file):
     file.write_text("a: !!python/object/apply:os.getcwd []\n")
     assert "could not determine a constructor" in refusal(file)

@@ -57,6 +57,14 @@ def test_a_column_of_names_parts_tests_of_one_confinement(written):
     ("text", "message"),
     [
         ("", "not a CSV file (No columns to parse from file)"),
+        (
+            "confinement_MPa,strength_MPa\n1,2,3\n",
+            "has rows of more cells than headings, expected as many",
+        ),
+        (
+            f"confinement_MPa,strength_MPa\n1,{'9' * 400}x\n",
+            f"line 2, column 'strength_MPa': '{'9' * 57}...', expected a number from 0 to 1e+06",
+        ),
         ("confinement_MPa,strength_MPa\n", "holds no rows, expected one a test or"),
         ("confinement,strength_MPa\n1,2\n", "column 'confinement_MPa' is missing, expected"),
         ("confinement_MPa,axial_strain\n1,2\n", "column 'axial_stress_MPa' is missing, expected"),

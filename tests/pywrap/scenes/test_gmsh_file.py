@@ -1,5 +1,6 @@
 """Geometries of one's own: meshes, groups, loads and what is refused (scenes/gmsh_file.py)."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -239,7 +240,8 @@ loading:
 def test_the_axial_measure_is_that_of_the_named_curve(case_of):
     driven = {"driven": {"top": {"x_mm": 0, "y_mm": -0.1}}, "speed_m_s": 0.02, "axial": "top"}
     loading = {"kind": "boundaries", "held": {"bottom": "xy"}, **driven}
-    case = case_of(SQUARE + GROUPS + APART, loading=loading, scene__materials={"cap": "steel"})
+    keys = {"scene__materials": {"cap": "steel"}, "contact": {}}
+    case = case_of(SQUARE + GROUPS + APART, loading=loading, **keys)
     measures = make_problem(case, make_mesh(case)).measures
     assert measures.axial_load == "top_y"
     assert (measures.area, measures.length) == pytest.approx((10e-3, 25e-3), rel=1e-12)
@@ -314,8 +316,33 @@ def test_no_surface_at_all_is_refused(refused):
 
 def test_a_file_of_other_words_is_refused(refused, tmp_path):
     said = refused("no mesh\n", CASE.replace("own.geo", "own.msh"), name="own.msh")
-    assert said.startswith("no mesh that can be read: ")
+    assert said.startswith("no mesh that can be read, expected Gmsh's format 2.2 or 4.1 (")
     assert "\n" not in said
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    ("place", "message"),
+    [
+        ("1e155 -1e194", "holds a node at 1e+194, expected at most 1e+12"),
+        ("nan 0", "holds nodes at no place, expected numbers"),
+        ("1e400 0", "holds nodes at no place, expected numbers"),
+    ],
+)
+def test_nodes_that_are_nowhere_are_refused(refused, tmp_path, place, message):
+    by_gmsh(SQUARE + GROUPS, tmp_path / "own.msh", "-format", "msh22")
+    text = re.sub(r"(?m)^1 0 0 0$", f"1 {place} 0", (tmp_path / "own.msh").read_text())
+    assert refused(text, CASE.replace("own.geo", "own.msh"), name="own.msh") == message
+
+
+def test_a_mesh_file_that_has_lost_an_end_is_refused(refused, tmp_path, capfd):
+    by_gmsh(SQUARE + GROUPS, tmp_path / "own.msh", "-format", "msh22")
+    text = (tmp_path / "own.msh").read_text().replace("$EndMeshFormat", "$EndMeshFromat")
+    assert refused(text, CASE.replace("own.geo", "own.msh"), name="own.msh") == (
+        "no mesh that can be read, expected Gmsh's format 2.2 or 4.1 ($MeshFormat not closed by "
+        "$EndMeshFormat.)"
+    )
+    assert capfd.readouterr().err == ""
 
 
 @pytest.mark.parametrize(
@@ -366,6 +393,31 @@ def test_elements_above_the_limit_are_refused_with_their_body(refused):
     assert "is not below the limit of 280 mm" in said
 
 
+def test_bodies_at_one_place_need_contact(case_of):
+    case = case_of(SQUARE + GROUPS + APART, scene__materials={"cap": "steel"}, contact={})
+    make_problem(case, make_mesh(case))
+    case = case_of(SQUARE + GROUPS + APART, scene__materials={"cap": "steel"})
+    with pytest.raises(ConfigError, match=r"^nodes \d+ and \d+ of the mesh are within 1e-06 of "):
+        make_problem(case, make_mesh(case))
+
+
+def test_a_mesh_with_a_flaw_is_refused_with_its_place(refused):
+    """A hinge; other flaws are those of any mesh, see mesh_flaws.py."""
+    corner = """\
+Point(7) = {15, 20, 0, 3};
+Point(8) = {15, 25, 0, 3};
+Line(8) = {3, 7};
+Line(9) = {7, 8};
+Line(10) = {8, 3};
+Curve Loop(3) = {8, 9, 10};
+Plane Surface(3) = {3};
+"""
+    said = refused(SQUARE + corner + GROUPS.replace("{1};", "{1, 3};", 1))
+    assert re.fullmatch(
+        r"node \d+ joins parts that share no edge, expected a node of its own in each", said
+    )
+
+
 @pytest.mark.parametrize(
     ("line", "word"),
     [
@@ -380,6 +432,11 @@ def test_elements_above_the_limit_are_refused_with_their_body(refused):
         ('CreateDir "TOUCHED";', "CreateDir"),
         ('OnelabRun("a", "touch TOUCHED");', "OnelabRun"),
         ('General.LogFileName = "TOUCHED";', "General"),
+        (
+            'DefineString[a = {"TOUCHED", GmshOption StrCat("Gen", "eral.LogFileName")}];',
+            "GmshOption",
+        ),
+        ('OnelabAction "reset";', "OnelabAction"),
         ('/* " */ SystemCall "touch TOUCHED"; // "', "SystemCall"),
     ],
 )
