@@ -49,8 +49,8 @@ def test_unlike_blocks_carry_the_pressure_that_they_are_in(
 ):
     """Each in uniaxial strain from the start: force to 1 %, penetration 1e-5 h.
 
-    A coarse light side has fewer nodes than pairs on a fine heavy one. Sweeps solve that slowly:
-    with the usual tolerance a penetration of 4e-5 h is left.
+    A coarse light side has fewer nodes than pairs on a fine heavy one. Sweeps solve that slowly,
+    and the core asks more of them where densities are unlike.
     """
     materials = (Elastic(young=young, poisson=poisson, density=density), UNIT)
     low = rectangle(8, 4, 1.0, 0.5, jitter=0.2)
@@ -59,7 +59,7 @@ def test_unlike_blocks_carry_the_pressure_that_they_are_in(
     held = (("low.bottom", 1), ("high.top", 1), ("low.left", 0), ("high.left", 0))
     held += (("low.right", 0), ("high.right", 0))
     loads = tuple(hold(name, mesh.nodes_of(name), axis) for name, axis in held)
-    contact = Contact(default_friction=friction, tolerance=0.01 if density > columns else 1.0)
+    contact = Contact(default_friction=friction)
     run = Run(contact_problem(mesh, materials=materials, contact=contact, velocity_loads=loads))
     pressure = 2e-3 * min(material.modulus for material in materials)
     strain = [pressure / material.modulus for material in materials]
