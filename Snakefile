@@ -20,12 +20,42 @@ CONFINEMENTS = ["00", "01", "02", "05", "10", "15", "20", "30", "40"]  # MPa
 BENCH = [f"{OUT}/bench/{{rock}}/{{test}}_p{level}.parquet" for level in CONFINEMENTS]
 QUARTZITE = "configs/materials/quartzite.yaml"
 
-# Sources that decide a result beside its case, and those that decide a figure beside its results.
-CORE = sorted(map(str, Path("fortran").rglob("*.f90")))
-PARTS = ["pywrap/lithofrac/analysis", "pywrap/lithofrac/data", "pywrap/lithofrac/plots"]
-DRAWING = [file for part in PARTS for file in sorted(Path(part).glob("*.py"))]
-SCENERY = sorted(map(str, Path("pywrap/lithofrac/scenes").glob("*.py")))
-DRAWING += [*sorted(Path("data").rglob("*.csv")), *sorted(Path("data").rglob("*.yaml"))]
+
+def modules(part, *names):
+    """Files of a part of the package, all or those named."""
+    folder = Path("pywrap/lithofrac", part)
+    found = [folder / f"{name}.py" for name in names] or sorted(folder.glob("*.py"))
+    return [str(file) for file in found]
+
+
+# Sources that decide a result beside its case: the core, and what a run imports; so its summary
+# says its peak and its fragments by modules of `analysis`.
+CORE = [
+    str(file)
+    for part in ("fortran", "pywrap/face")
+    for file in sorted(Path(part).rglob("*.f90"))
+]
+# Of `config`, but for pages, warnings, and what no case of a suite uses.
+WORDS = ["doubts", "reference", "schema", "setting", "study"]
+CONFIG = [file for file in modules("config") if Path(file).stem not in WORDS]
+SHARED = [*CORE, *CONFIG, *modules("", "errors", "mesh_flaws", "npz", "problem")]
+POINT = [*SHARED, *modules("", "kernels", "point")]
+DECIDING = [
+    *SHARED,
+    *modules("", "core", "guards", "run"),
+    *modules("analysis", "crack_faces", "frames", "run_numbers", "strength"),
+    *modules("results"),
+    *modules("scenes"),
+]
+
+# Sources that decide a table, and those that decide a figure, beside results.
+TABLING = [*modules("analysis"), *modules("data")]
+TABLING += [
+    str(file)
+    for end in ("csv", "yaml")
+    for file in sorted(Path("data").rglob(f"*.{end}"))
+]
+DRAWING = [*TABLING, *modules("plots")]
 
 RUNS = expand(f"{OUT}/runs/{{case}}/summary.json", case=CASES)
 PAIRED = dict.fromkeys(name for pair in VARIANTS.items() for name in pair)
@@ -57,7 +87,7 @@ TABLES = {
     "zigong_prediction": ["configs/materials/sandstone.yaml"],
     "zigong_prediction_error": ["configs/materials/sandstone.yaml"],
     "kirsch": [run for run in RUNS if "/kirsch" in run],
-    "run_time": RUNS,
+    "run_time": ["reports/bands.csv", *RUNS],
     **{"cracks": RUNS, "bands": RUNS, "punch": OWN},
     "variants": [SUITE, *PAIRS],
     "claims": ["reports/claims_bands.csv", *RUNS],
@@ -104,11 +134,12 @@ GALLERY = {
         "gallery",
         [run for run in SANDSTONE if "/sandstone_plane_strain_p" in run],
     ),
-    "fracture_series": ("fracture_series", COMPARED["fracture_series"]),
+    "stress_strain": ("stress_strain", SANDSTONE),
     "strength": ("strength", [*SANDSTONE, *STIFF]),
     **{
-        name: (name, COMPARED[name])
-        for name in ("size_effect", "hole_patterns", "hole_gauges")
+        name: (name, runs)
+        for name, runs in COMPARED.items()
+        if name != "punch"  # which comes first
     },
 }
 GALLERY = {name: (kind, runs) for name, (kind, runs) in GALLERY.items() if runs}
@@ -163,8 +194,7 @@ rule all:
 
 rule simulate:
     input:
-        CORE,
-        SCENERY,
+        DECIDING,
     output:
         summary=f"{OUT}/runs/{{case}}/summary.json",
         history=f"{OUT}/runs/{{case}}/history.parquet",
@@ -189,7 +219,7 @@ rule simulate:
 
 rule bench:
     input:
-        CORE,
+        POINT,
         rock="configs/materials/{rock}.yaml",
     output:
         BENCH,
@@ -329,8 +359,8 @@ rule plot_compared:
 
 rule table:
     input:
-        DRAWING,
-        lambda wildcards: CORE if wildcards.table == "options" else [],  # it drives the point itself
+        TABLING,
+        lambda wildcards: POINT if wildcards.table == "options" else [],  # it drives the point itself
         sources=lambda wildcards: TABLES[wildcards.table],
     output:
         f"{OUT}/tables/{{table}}.csv",
@@ -359,7 +389,8 @@ rule picture:
 
 
 rule pages:
-    # Asked for by name only: refreshes what is committed, README.md, the sheets and the gallery.
+    # Asked for by name only: refreshes what is committed, first the gallery, to which README.md and
+    # the sheets have links.
     input:
         f"{OUT}/report.md",
         pictures=expand(f"{OUT}/gallery/{{picture}}.png", picture=GALLERY),
@@ -368,8 +399,8 @@ rule pages:
     message:
         "Fill README.md, the sheets and the gallery"
     shell:
-        "for page in {params.pages}; do lithofrac report {OUT} --out $page || exit 1; done &&"
-        " lithofrac gallery {OUT} {input.pictures} --out reports/gallery"
+        "lithofrac gallery {OUT} {input.pictures} --out reports/gallery &&"
+        " for page in {params.pages}; do lithofrac report {OUT} --out $page || exit 1; done"
 
 
 rule summary:

@@ -8,8 +8,8 @@ STABILITY = [
 rule make_stability:
     # Cells run side by side in processes of their own.
     input:
-        CORE,
-        SCENERY,
+        DECIDING,
+        POINT,
         sorted(map(str, Path("pywrap/lithofrac/stability").rglob("*.py"))),
     output:
         STABILITY,

@@ -293,7 +293,7 @@ def table(
         "# Mutants: do the tests notice?",
         "",
         "Each row is one deliberate mistake, made in a copy of the code and tried by a few quick",
-        "tests that were named for it beforehand (`tests/reliability/mutants.yaml`). A mutant that",
+        "tests that are named for it (`tests/reliability/mutants.yaml`). A mutant that",
         "no test fails on would be a hole in the tests. Written by `python3 tasks.py mutants`.",
         "",
         f"- Commit: {commit}",

@@ -4,6 +4,7 @@ Initiation stresses are those of the paper's own criterion: of single runs from 
 `hole_initiation`, means over the realisations of a mesh from the table `size_effect`.
 """
 
+import itertools
 import re
 
 import numpy as np
@@ -34,13 +35,18 @@ APART = 0.01  # relative difference of stress at which both sides do not begin a
 
 def initiation(source: Source) -> pd.DataFrame:
     """Rows of the paper's criterion that have a stress before the largest, R of Fig. 15."""
-    table = source.table("hole_initiation")
-    chosen = table["case"].map(lambda name: SHOWN.fullmatch(name) is not None)
-    chosen &= (table["criterion"] == CRITERION) & (table["note"] != AFTER)
-    table = table[chosen].dropna(subset=STRESS)
+    table = _shown(source)
+    table = table[table["criterion"] == CRITERION]
     if table.empty:
         raise CannotCheckError("the table hole_initiation has no initiation at R = 25 mm")
     return table
+
+
+def _shown(source: Source) -> pd.DataFrame:
+    """The same by every criterion."""
+    table = source.table("hole_initiation")
+    chosen = table["case"].map(lambda name: SHOWN.fullmatch(name) is not None)
+    return table[chosen & (table["note"] != AFTER)].dropna(subset=STRESS)
 
 
 def by_radius(source: Source, zone: str, needed: int = 3) -> pd.Series:
@@ -60,7 +66,44 @@ def _order(source: Source) -> dict[str, Value]:
     if missing:
         raise CannotCheckError(f"no {missing[0]} initiation at R = 25 mm")
     remote, sidewall = table["remote"] - table["primary"], table["sidewall"] - table["remote"]
-    return {"remote": smallest(remote.to_dict()), "sidewall": smallest(sidewall.to_dict())}
+    last = smallest(sidewall.to_dict())
+    words = "; ".join([last.note, *_other_order(source)])
+    return {"remote": smallest(remote.to_dict()), "sidewall": Value(last.value, words)}
+
+
+def _other_order(source: Source) -> list[str]:
+    """Where another order stands beside the one that is judged, in words.
+
+    By the other criteria, within the intervals of the judged stresses, and at the other radii.
+    """
+    table, words = _shown(source), []
+    for criterion, own in table.groupby("criterion"):
+        reverse = _reversed(*2 * [own.pivot_table(STRESS, "case", "zone")])
+        if criterion != CRITERION and reverse:
+            words.append(f"reversed by {criterion} in {', '.join(reverse)}")
+    own = table[table["criterion"] == CRITERION]
+    low, high = (own.pivot_table(f"{end}_MPa", "case", "zone") for end in ("low", "high"))
+    if overlap := _reversed(low, high):
+        words.append(f"intervals overlap in {', '.join(overlap)}")
+    if "size_effect" in source.tables:
+        means = pd.DataFrame({zone: by_radius(source, zone) for zone in ZONES})
+        if reverse := _reversed(means, means):
+            shown = [f"{radius:g} mm by {by:.2g} MPa" for radius, by in reverse.items()]
+            words.append(f"means reversed at R = {', '.join(shown)}")
+    return words
+
+
+def _reversed(low: pd.DataFrame, high: pd.DataFrame) -> dict:
+    """Rows in which a zone starts by its low end before the one ahead of it does by its high end.
+
+    `low` and `high` have a column a zone; the result is the largest difference by row [MPa].
+    """
+    pairs = [(high.get(a), low.get(b)) for a, b in itertools.pairwise(ZONES)]
+    behind = [first - second for first, second in pairs if first is not None and second is not None]
+    if not behind:
+        return {}
+    most = pd.concat(behind, axis=1).max(axis=1)
+    return most[most > 0.0].to_dict()
 
 
 def _bound(source: Source) -> dict[str, Value]:
@@ -87,10 +130,18 @@ def _primary_parallel(source: Source) -> dict[str, Value]:
 
 
 def _remote_parallel(source: Source) -> dict[str, Value]:
-    """Each side by itself: cracks that lean to both sides would have an upright mean."""
-    tables = pd.concat(_cracked(source, MAIN, "remote").values())
-    sides = {-1: "left", 1: "right"}
-    angles = {sides[side]: direction_deg(table) for side, table in tables.groupby("side")}
+    """Each run and each side by itself: cracks that lean to both sides would have an upright mean.
+
+    What opens after the largest stress belongs to the collapse of the block.
+    """
+    sides, angles = {-1: "left", 1: "right"}, {}
+    for name, table in _cracked(source, MAIN, "remote").items():
+        history = source.run(name).history
+        end = history["time_s"][history["axial_stress_MPa"].idxmax()]
+        for side, own in table[table["time_s"] <= end].groupby("side"):
+            angles[f"{name}, {sides[side]}"] = direction_deg(own)
+    if not angles:
+        raise CannotCheckError("no remote crack before the largest stress")
     return {"direction": largest(angles)}
 
 
@@ -211,7 +262,7 @@ def _asymptotes(source: Source) -> dict[str, Value]:
         raise CannotCheckError(f"{len(ends)} of 3 asymptotes are determined")
     gap = 100.0 * float(np.diff(ends).min() / ends.mean())
     words = ", ".join(f"{zone} {value:.1f} MPa" for zone, value in ends.items())
-    return {"gap": Value(gap, words)}
+    return {"gap": Value(gap, f"{words}; whether a stress falls towards them is 16a to 16c")}
 
 
 def _below(zone: str):

@@ -164,10 +164,17 @@ def _width(source: Source) -> dict[str, Value]:
 
 
 def _alike(source: Source) -> dict[str, Value]:
-    soft, stiff = (
-        float(np.mean(list(_localised(source, name).values()))) for name in (SOFT, STIFF)
-    )
+    known = [_localised(source, name) for name in (SOFT, STIFF)]
+    soft, stiff = (float(np.mean(list(widths.values()))) for widths in known)
     note = f"{soft:.2g} elements under soft pressure, {stiff:.2g} between platens"
+    by_end = [{name.removeprefix(series): width for name, width in widths.items()}
+              for series, widths in zip((SOFT, STIFF), known, strict=True)]  # fmt: skip
+    pairs = {end: (width, by_end[1][end]) for end, width in by_end[0].items() if end in by_end[1]}
+    if pairs:
+        end = max(pairs, key=lambda end: max(pairs[end]) / min(pairs[end]))
+        one, other = pairs[end]
+        pressure = source.run(f"{SOFT}{end}").confinement_MPa
+        note += f", furthest apart at {pressure:g} MPa: {one:.3g} against {other:.3g}"
     return {"ratio": Value(max(soft / stiff, stiff / soft), note)}
 
 

@@ -78,8 +78,7 @@ def _elastic(table: pd.DataFrame, runs: list[HoleRun]) -> list[dict]:
     """No initiation in a zone below the load at which it reaches its strength elastically.
 
     That is ft at crown and fan, the first yield of Table 1 at the sidewall, at the gauge of the
-    zone that gets there first: gauges beside it bend as well when it softens. A value whose
-    interval reaches the bound is not below it.
+    zone that gets there first: gauges beside it bend as well when it softens.
     """
     rows = []
     for run in runs:
@@ -88,7 +87,7 @@ def _elastic(table: pd.DataFrame, runs: list[HoleRun]) -> list[dict]:
                 continue
             bound = elastic_bound(run, row.zone)
             percent = 100.0 * (row.initiation_MPa / bound - 1.0)
-            word = OPEN if np.isnan(percent) else verdict(row.high_MPa >= bound)
+            word = OPEN if np.isnan(percent) else verdict(row.initiation_MPa >= bound)
             rows.append(_row(ELASTIC, row, bound, percent, 0.0, word))
     return rows
 

@@ -9,6 +9,7 @@ import pandas as pd
 
 from lithofrac.analysis.bench import find_bench
 from lithofrac.analysis.discrete_results import discrete_rows
+from lithofrac.analysis.kinetic import ratio_before_peak
 from lithofrac.analysis.runs import find_runs
 from lithofrac.analysis.tables import NOT_DIGITISED, errors, single_element, strength, tautona
 from lithofrac.analysis.tables import zigong_line as fitted_line
@@ -16,7 +17,11 @@ from lithofrac.analysis.verdict import FAILS, OPEN, verdict
 
 COLUMNS = ("case", "quantity", "expected", "measured", "computed", "difference", "band", "verdict")
 BENCH_STIFFNESS = 0.02  # lateral stiffness over E of `lithofrac point --test stiff_confinement`
-RESIDUAL = "largest ledger residual over the largest energy of the run"
+QUALITY = {
+    "energy_residual": "largest ledger residual over the largest energy of the run",
+    "kinetic_ratio_at_peak": "kinetic over internal energy at peak",
+    "kinetic_ratio_before_peak": "the same, largest from a tenth of the peak load to the peak",
+}  # band -> what it is of
 
 
 def verdicts(inputs: list[Path], data: Path) -> pd.DataFrame:
@@ -133,16 +138,18 @@ def _measured(paths: list[Path], data: Path, bands: pd.Series) -> list[dict]:
 
 
 def _quality(paths: list[Path], bands: pd.Series) -> list[dict]:
-    """Worst energy residual, and worst kinetic share, of the runs that have one.
+    """Worst energy residual, and worst kinetic shares, of the runs that have one.
 
-    The residual is over the largest internal, external or kinetic energy that its run has seen.
+    The residual is over the largest internal, external or kinetic energy that its run has seen. A
+    run without an axial stress has no peak; `run_time` judges it as well.
     """
-    rows = []
-    for key, name in (
-        ("energy_residual", RESIDUAL),
-        ("kinetic_ratio_at_peak", "kinetic over internal energy at peak"),
-    ):
-        values = {run.name: run.summary.get(key) for run in find_runs(paths)}
+    rows, runs = [], find_runs(paths)
+    known = {key: {run.name: run.summary.get(key) for run in runs} for key in QUALITY}
+    known["kinetic_ratio_before_peak"] = {
+        run.name: ratio_before_peak(run) for run in runs if run.has_axial_stress
+    }
+    for key, name in QUALITY.items():
+        values = known[key]
         values = {name: abs(value) for name, value in values.items() if value is not None}
         if not values:
             continue

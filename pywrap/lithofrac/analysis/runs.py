@@ -45,6 +45,12 @@ class Run:
         """The case as it was run (`case.yaml`)."""
         return read_yaml(self.folder / "case.yaml")
 
+    @property
+    def has_axial_stress(self) -> bool:
+        """Whether the history tells an axial stress; a wave in a bar and a hole under traction have
+        none."""
+        return "axial_stress_MPa" in pd.read_parquet(self.folder / "history.parquet")
+
     @cached_property
     def history(self) -> pd.DataFrame:
         """`history.parquet` of the axial loading: from the last row without axial strain on."""

@@ -12,10 +12,12 @@ import pandas as pd
 from lithofrac.analysis.bench import find_bench
 from lithofrac.analysis.curves import compare
 from lithofrac.analysis.fit import StrengthLine, fit_line
+from lithofrac.analysis.kinetic import ratio_before_peak
 from lithofrac.analysis.kirsch import infinite_plate
 from lithofrac.analysis.kirsch_series import plate
 from lithofrac.analysis.mohr_coulomb import first_yield, peak_strength, residual_strength
 from lithofrac.analysis.runs import Run, find_runs
+from lithofrac.analysis.verdict import OPEN, verdict
 from lithofrac.config.material import Material
 from lithofrac.data import Curve, load_curves, measured_strength
 from lithofrac.problem import Mesh
@@ -33,6 +35,8 @@ SUMMARY = (
     "element_steps_per_core_second",
     "energy_residual",
     "kinetic_ratio_at_peak",
+    "kinetic_ratio_before_peak",
+    "kinetic_verdict",
     "version",
     "commit",
     "native",
@@ -173,9 +177,21 @@ def kirsch(inputs: list[Path], data: Path) -> pd.DataFrame:
 
 
 def run_time(inputs: list[Path], data: Path) -> pd.DataFrame:
-    """Size, cost and energy error of the runs."""
-    rows = [{"case": run.name, **{k: run.summary.get(k) for k in SUMMARY}}
-            for run in find_runs(inputs)]  # fmt: skip
+    """Size, cost and energy error of the runs.
+
+    The kinetic ratio before the peak is held against its band in `bands.csv`, which is an input.
+    """
+    paths = [Path(path) for path in inputs]
+    (file,) = (path for path in paths if path.name == "bands.csv")
+    band = pd.read_csv(file).set_index("quantity")["band"]["kinetic_ratio_before_peak"]
+    rows = []
+    for run in find_runs([path for path in paths if path != file]):
+        ratio = ratio_before_peak(run)
+        judged = {
+            "kinetic_ratio_before_peak": ratio,
+            "kinetic_verdict": OPEN if np.isnan(ratio) else verdict(ratio < band),
+        }
+        rows.append({"case": run.name, **{k: run.summary.get(k) for k in SUMMARY}, **judged})
     return pd.DataFrame(rows, columns=["case", *SUMMARY])
 
 

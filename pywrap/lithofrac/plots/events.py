@@ -13,8 +13,13 @@ from lithofrac.plots.fractures import MODES
 
 
 def figure(inputs: list[Path], data: Path) -> Figure:
-    """Stress over the cracks, one tick each, over their length; against axial strain."""
+    """Stress over the cracks, one tick each, over their length; against axial strain.
+
+    A run without cracks shows its stress alone.
+    """
     run = find_runs(inputs)[0]
+    if run.cracks.empty:
+        return _without_cracks(run)
     drawn, axes = style.new_figure(
         3, 1, height=4.6, sharex=True, gridspec_kw={"height_ratios": [3, 0.5, 1.4]}
     )
@@ -25,6 +30,16 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     curve.set_title(run.name)
     length.set_xlabel("axial strain [%]")
     length.set_xlim(0.0, 100.0 * run.history["axial_strain"].max())
+    return drawn
+
+
+def _without_cracks(run: Run) -> Figure:
+    drawn, axes = style.new_figure(1, 1, height=3.0)
+    curve = axes[0, 0]
+    draw_stress(curve, run)
+    style.badge(curve, "no cracks")
+    curve.set(title=run.name, xlabel="axial strain [%]")
+    curve.set_xlim(0.0, 100.0 * run.history["axial_strain"].max())
     return drawn
 
 

@@ -28,9 +28,14 @@ AROUND = 0.06  # of the extent, shown beside the bodies; what flies further is c
 
 
 def figure(inputs: list[Path], data: Path) -> Figure:
-    """Pattern of one run at its end: by mode on the left, by time of insertion on the right."""
+    """Pattern of one run at its end: by mode on the left, by time of insertion on the right.
+
+    A run without cracks shows its bodies alone.
+    """
     run = find_runs(inputs)[0]
     frame = run.last_frame
+    if run.cracks.empty:
+        return _without_cracks(run, frame)
     faces = find_faces(frame, run.cracks)
     times = 1e3 * run.cracks["time_s"].to_numpy()[faces.crack]
     factor = magnification(frame)
@@ -46,16 +51,29 @@ def figure(inputs: list[Path], data: Path) -> Figure:
         _look_closer(panel, frame, faces)
         _name_axes(panel, frame)
     by_time.set_ylabel("")
-    if len(times):
-        bar = drawn.colorbar(lines, ax=list(axes[0]), shrink=0.8, aspect=30)
-        bar.set_label("time of insertion [ms]")
+    bar = drawn.colorbar(lines, ax=list(axes[0]), shrink=0.8, aspect=30)
+    bar.set_label("time of insertion [ms]")
     drawn.legend(
         *by_mode.get_legend_handles_labels(),
         loc="outside upper center",
         ncols=2,
-        title=f"{run.name} at {_shown(1e3 * frame.time_s)} ms, displacements {scale(factor)}",
+        title=_title(run, frame, factor),
     )
     return drawn
+
+
+def _without_cracks(run: Run, frame: Frame) -> Figure:
+    factor = magnification(frame)
+    drawn, axes = style.new_figure(1, 1, **_size(frame, 1))
+    draw_bodies(axes[0, 0], run, frame, find_faces(frame, run.cracks), factor)
+    _name_axes(axes[0, 0], frame)
+    title = _title(run, frame, factor).replace(" at ", "\nat ")
+    axes[0, 0].set_title(title, loc="center", fontweight="normal")
+    return drawn
+
+
+def _title(run: Run, frame: Frame, factor: float) -> str:
+    return f"{run.name} at {_shown(1e3 * frame.time_s)} ms, displacements {scale(factor)}"
 
 
 def series(inputs: list[Path], data: Path) -> Figure:

@@ -25,7 +25,16 @@ figure {{ margin: 1.5em 0; border-top: 1px solid #ccc; }}
 figure img {{ max-width: 100%; height: auto; }}
 figcaption {{ font-size: 13px; color: #444; }}
 </style></head><body>
-{body}</body></html>
+{body}{script}</body></html>
+"""
+
+# A page inside Snakemake's report has no folder: what links to its neighbours keeps its words.
+SCRIPT = """<script>
+if (!/^(file|https?):$/.test(location.protocol)) {
+  const links = document.querySelectorAll('a:not([href^="#"]):not([href*=":"])');
+  for (const link of links) link.replaceWith(link.textContent);
+}
+</script>
 """
 
 
@@ -43,7 +52,7 @@ def to_html(text: str) -> str:
     """A page of its own from Markdown; links and pictures stay as they are."""
     title = next((line.lstrip("# ") for line in text.splitlines() if line.startswith("#")), "")
     body = MarkdownIt("commonmark").enable("table").render(text)
-    return PAGE.format(title=title, body=body)
+    return PAGE.format(title=title, body=body, script=SCRIPT)
 
 
 def header(column: str) -> str:

@@ -5,7 +5,8 @@ A sheet names its figures, by file name without suffix, in a comment that Markdo
     <!-- figures: punch fractures_punch_* events_punch_* -->
 
 `*` stands for anything. The sheet is the scene: its page and its category in the report show these
-figures, each once, in this order.
+figures, each once, in this order. In the sheet as it is committed, pictures of those that are in
+the gallery follow the comment; a page has its figures in their place.
 """
 
 import re
@@ -16,7 +17,10 @@ from pathlib import Path
 
 from lithofrac.data import DataError
 
-FIGURES = re.compile(r"<!-- figures:(?P<patterns>( +[\w.*?@\[\]-]+)+) -->\n")
+FIGURES = re.compile(
+    r"(?P<comment><!-- figures:(?P<patterns>( +[\w.*?@\[\]-]+)+) -->\n)"
+    r"(!\[[^\]\n]*\]\([^)\n]*\)\n)*"
+)
 
 
 @dataclass(frozen=True)
@@ -71,12 +75,26 @@ def category_of(figure: str, sheets: list[Sheet]) -> str:
 
 def place(text: str, names: list[str], show: Callable[[str], str]) -> str:
     """Put what `show(name)` gives of each figure where the comments of a sheet name it."""
+    return _shown(text, names, lambda comment, some: "\n".join(map(show, some)))
+
+
+def pictured(text: str, names: list[str], folder: str) -> str:
+    """A sheet with links to the pictures `folder/NAME.png` below the comments that name them."""
+
+    def below(comment: str, some: list[str]) -> str:
+        return comment + "".join(f"![{name}]({folder}/{name}.png)\n" for name in some)
+
+    return _shown(text, names, below)
+
+
+def _shown(text: str, names: list[str], put: Callable[[str, list[str]], str]) -> str:
+    """Replace each comment of a sheet by what `put` makes of it and its figures, each once."""
     shown: set[str] = set()
 
     def placed(block: re.Match) -> str:
         some = [name for name in chosen(block["patterns"], names) if name not in shown]
         shown.update(some)
-        return "\n".join(map(show, some))
+        return put(block["comment"], some)
 
     return FIGURES.sub(placed, text)
 

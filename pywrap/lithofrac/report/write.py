@@ -2,6 +2,7 @@
 
 import base64
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
@@ -9,8 +10,9 @@ import pandas as pd
 from lithofrac.data import DataError
 from lithofrac.report.blocks import fill, has_blocks
 from lithofrac.report.captions import caption, is_of_a_run
+from lithofrac.report.links import moved, to_files, to_pages
 from lithofrac.report.markdown import to_html, to_markdown
-from lithofrac.report.sheets import place
+from lithofrac.report.sheets import pictured, place
 
 SHEETS = Path("reports", "sheets")
 ORIGIN = ("version", "commit", "native", "machine", "finished")  # of run_time
@@ -35,9 +37,10 @@ def write_report(out_dir: Path, file: Path, sheets: Path = SHEETS) -> None:
     """Write Markdown, or a web page when `file` ends in `.html`.
 
     A file that is there and has marked blocks (README.md, a sheet) gets its tables refreshed in
-    place and keeps the rest. Otherwise a file named like a sheet becomes that sheet, filled, with
-    its figures; a web page holds them in itself. Any other name becomes the whole report: results,
-    all sheets, costs; as a web page it is part of Snakemake's, which has the figures.
+    place, and the pictures of the gallery where it names them; the rest is kept. Otherwise a file
+    named like a sheet becomes that sheet, filled, with its figures; a web page holds them in
+    itself. Any other name becomes the whole report: results, all sheets, costs; as a web page it is
+    part of Snakemake's, which has the figures.
 
     Parameters
     ----------
@@ -52,20 +55,25 @@ def write_report(out_dir: Path, file: Path, sheets: Path = SHEETS) -> None:
     """
     tables, captions = read_tables(out_dir), sheets.parent / "captions"
     old = file.read_text(encoding="utf-8") if file.is_file() else ""
-    sheet = sheets / f"{file.stem}.md"
-    committed = linked(tables, sheets.parent / GALLERY, file.parent)
-    if has_blocks(old) and file.suffix == ".md" and not file.is_relative_to(out_dir):
-        text = fill(old, committed, str(file))
-    elif sheet.is_file():
-        text = fill(sheet.read_text(encoding="utf-8"), committed, str(sheet))
-        here = None if file.suffix == ".html" else file.parent
-        text = with_figures(text, tables, out_dir, here, captions)
+    here, html, sheet = file.parent, file.suffix == ".html", sheets / f"{file.stem}.md"
+    if has_blocks(old) and not html and not file.is_relative_to(out_dir):
+        pictures = sheets.parent / GALLERY
+        text = fill(old, linked(tables, to_files(pictures, here)), str(file))
+        names = [path.stem for path in pictures.glob("*.png")]
+        text = pictured(text, names, os.path.relpath(pictures, here))
     else:
-        if file.suffix == ".md":
-            tables = linked(tables, out_dir / "figures", file.parent)
-        text = whole_report(tables, sheets)
-        if file.suffix == ".md":
-            text = with_figures(text, tables, out_dir, file.parent, captions)
+        pages = out_dir / "pages" if html else None
+        link = to_pages(out_dir, sheets, here) if html else to_files(out_dir / "figures", here)
+        known = linked(tables, link)
+        if sheet.is_file():
+            text = moved(sheet.read_text(encoding="utf-8"), sheets, here, pages)
+            text = fill(text, known, str(sheet))
+        else:
+            text = whole_report(known, sheets, here, pages)
+        if html and not sheet.is_file():
+            text = place(text, [], str)  # Snakemake's report has the figures
+        else:
+            text = with_figures(text, tables, out_dir, None if html else here, captions)
     file.parent.mkdir(parents=True, exist_ok=True)
     part = file.with_name(f".{file.name}.part")
     part.write_text(to_html(text) if file.suffix == ".html" else text, encoding="utf-8")
@@ -86,13 +94,16 @@ def read_tables(out_dir: Path) -> dict[str, pd.DataFrame]:
     return tables
 
 
-def whole_report(tables: dict[str, pd.DataFrame], sheets: Path) -> str:
-    """Provenance and results first, then every sheet, and costs."""
+def whole_report(
+    tables: dict[str, pd.DataFrame], sheets: Path, here: Path, pages: Path | None
+) -> str:
+    """Provenance and results first, then every sheet, and costs; links as of `links.moved`."""
     parts = ["# lithofrac: report of the suite\n", provenance(tables)]
     for name in [name for name in TITLES if name in tables]:
         if name == "run_time":
             for path in sorted(sheets.glob("*.md")):
-                text = fill(path.read_text(encoding="utf-8"), tables, str(path))
+                text = moved(path.read_text(encoding="utf-8"), sheets, here, pages)
+                text = fill(text, tables, str(path))
                 parts.append(text.replace("\n## ", "\n### ").replace("# ", "## ", 1))
         shown = tables[name].drop(columns=list(ORIGIN), errors="ignore")
         parts.append(f"## {TITLES[name]}\n\n{to_markdown(shown)}")
@@ -124,14 +135,8 @@ def embedded(path: Path) -> str:
     return f"data:{TYPES[path.suffix]};base64,{data}"
 
 
-def linked(tables: dict[str, pd.DataFrame], pictures: Path, here: Path) -> dict[str, pd.DataFrame]:
-    """The tables with links, relative to `here`, for the figures they name that are there."""
-
-    def link(name: str) -> str:
-        drawn = [pictures / str(name), (pictures / str(name)).with_suffix(".png")]
-        there = next((path for path in drawn if path.is_file()), None)
-        return f"[{name}]({os.path.relpath(there, here)})" if there else name
-
+def linked(tables: dict[str, pd.DataFrame], link: Callable[[str], str]) -> dict[str, pd.DataFrame]:
+    """The tables with `link(name)` for the figures they name."""
     return {
         key: table.assign(**{DRAWN: table[DRAWN].map(link)}) if DRAWN in table else table
         for key, table in tables.items()

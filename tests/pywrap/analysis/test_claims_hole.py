@@ -22,7 +22,8 @@ def initiation(stress_of):
     failed must not count."""
     rows = [
         {"case": f"hole_r{r:04.1f}" + (f"@seed{s}" if s > 1 else ""), "zone": zone,
-         "criterion": "curvature", "initiation_MPa": stress_of(zone, r, s), "note": np.nan}
+         "criterion": "curvature", "initiation_MPa": stress_of(zone, r, s), "note": np.nan,
+         "low_MPa": stress_of(zone, r, s) - 0.1, "high_MPa": stress_of(zone, r, s) + 0.1}
         for zone in ZONES for r in RADII for s in (1, 2)
     ]  # fmt: skip
     last = {"case": "hole_r25.0", "zone": "primary", "criterion": "curvature", "note": np.nan}
@@ -64,6 +65,31 @@ def test_order_is_that_of_each_realisation_of_the_radius_shown():
         "remote": pytest.approx(10.0), "sidewall": pytest.approx(5.0)
     }  # fmt: skip
     assert measured("hole_stress_bound", tables)["largest"] == pytest.approx(22.36)
+
+
+def words_of_order(table, means=None):
+    tables = {"hole_initiation": table} | ({} if means is None else {"size_effect": means})
+    return HOLE["hole_order"].measures(Source({}, tables, None))["sidewall"].note
+
+
+def test_order_that_is_another_elsewhere_is_said_beside_the_one_that_is_judged():
+    """By exhaustion in the second mesh, by the means at 3.2 mm, and within an interval."""
+    table = initiation(falling)
+    assert words_of_order(table) == "hole_r25.0"
+    own = table[table["criterion"] == "curvature"]
+    other = own.assign(criterion="exhaustion")
+    second = (other["case"] == "hole_r25.0@seed2") & (other["zone"] == "sidewall")
+    other.loc[second, "initiation_MPa"] = 1.0
+    assert words_of_order(pd.concat([table, other])) == (
+        "hole_r25.0; reversed by exhaustion in hole_r25.0@seed2"
+    )
+    second = (table["case"] == "hole_r25.0@seed2") & (table["zone"] == "remote")
+    table.loc[second, "high_MPa"] = 25.0
+    means = size_effect(lambda zone, radius, _: falling(zone, radius, 1))
+    means.loc[(means["zone"] == "remote") & (means["radius_mm"] == 3.2), "mean_MPa"] += 7.0
+    assert words_of_order(table, means) == (
+        "hole_r25.0; intervals overlap in hole_r25.0@seed2; means reversed at R = 3.2 mm by 2 MPa"
+    )
 
 
 def test_largest_stress_is_that_of_the_means():
@@ -205,6 +231,22 @@ def test_remote_cracks_that_lean_to_both_sides_are_not_parallel(make_hole):
     lean = [(12.0, 14.0, 13.0, 15.0, T, 0.5), (-12.0, 14.0, -13.0, 15.0, T, 0.5)]
     run = make_hole("hole_r25.0", lean)
     assert measured("hole_remote_parallel", runs=[run])["direction"] == pytest.approx(45.0)
+
+
+def test_remote_cracks_of_two_meshes_that_lean_apart_are_not_parallel(make_hole):
+    """The worst run and side counts, as for the primary crack."""
+    lean = {"hole_r25.0": 13.0, "hole_r25.0@seed2": 11.0}
+    runs = [make_hole(name, [(12.0, 14.0, x, 15.0, T, 0.5)]) for name, x in lean.items()]
+    assert measured("hole_remote_parallel", runs=runs)["direction"] == pytest.approx(45.0)
+
+
+def test_remote_cracks_after_the_largest_stress_are_those_of_a_failed_block(make_hole):
+    late = (12.0, 14.0, 13.0, 15.0, T, 1.01)
+    run = make_hole("hole_r25.0", [(12.0, 14.0, 12.0, 15.0, T, 0.99), late])
+    assert measured("hole_remote_parallel", runs=[run])["direction"] == pytest.approx(0.0)
+    alone = make_hole("hole_r16.3", [late])
+    with pytest.raises(CannotCheckError, match="no remote crack before the largest stress"):
+        measured("hole_remote_parallel", runs=[alone])
 
 
 def test_remote_crack_begins_off_the_wall_and_grows_both_ways(make_hole):

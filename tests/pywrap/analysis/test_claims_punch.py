@@ -102,6 +102,13 @@ def test_cracks_of_the_cone_stand_beside_the_axis_no_further_than_the_strip_is_w
     assert value.note.startswith("3 cracks")
 
 
+def test_crack_near_the_edge_counts_as_its_own_only_off_the_axis(make_punch_run):
+    """Strip of 2 mm: 0.4 mm off the axis is 0.6 mm from an edge, but part of the axial crack."""
+    cracks = [upright(0.2, 0.1, 0.1), upright(0.3, 0.1, 0.1), upright(0.0, 4.0, 0.2)]
+    run = Run(make_punch_run("punch_tension_only", cracks=cracks))
+    assert measured("punch_tension_pattern", run) == {"edge_share": pytest.approx(25.0)}
+
+
 def test_cone_without_cracks_is_not_judged(make_punch_run):
     run = Run(make_punch_run("punch_discrete", cracks=[upright(0.0, 1.0, 1.0)]))
     with pytest.raises(CannotCheckError, match="punch_discrete has no cracks in the cone"):

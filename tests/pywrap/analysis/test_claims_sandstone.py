@@ -233,7 +233,10 @@ def test_widths_of_a_series_are_averaged_before_they_are_compared(with_fields):
             with_fields(f"{STIFF}_p10", columns(1))]  # fmt: skip
     assert measured("localisation_alike", *runs)["ratio"] == pytest.approx(1.6 / (0.8 + 8 / 18))
     note = values("localisation_alike", *runs)["ratio"].note
-    assert note == "3.2 elements under soft pressure, 2.5 between platens"
+    assert note == (
+        "3.2 elements under soft pressure, 2.5 between platens, furthest apart at 0 MPa:"
+        " 3.2 against 3.2"
+    )
 
 
 def test_segments_are_oblique_by_their_median_in_the_runs_with_one_band(with_fields):

@@ -1,6 +1,7 @@
 """Initiation about a hole, read from runs (analysis/hole.py)."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from lithofrac.analysis.hole import AFTER, HoleRun, is_hole
@@ -70,6 +71,18 @@ def test_wake_of_a_primary_crack_is_no_remote_event(make_hole):
     assert found.stress == pytest.approx(8.5, abs=0.05)
     none = events(make_hole("hole_r16.3", wake=("remote_01", "remote_02")))["remote", "curvature"]
     assert (none.probe, none.note) == ("", "no element softens")
+
+
+def test_bend_of_the_fan_counts_only_once_its_element_has_begun_to_soften(make_hole):
+    """Both gauges bend at 8 and 8.5 MPa; one begins to soften at 20 MPa, far behind its bend."""
+    folder = make_hole("hole_r25.0", wake=("remote_01", "remote_02"))
+    probes = pd.read_parquet(folder / "probes.parquet")
+    late = (probes["probe"] == "remote_01") & (probes["time_s"] >= 20.0 / 24.0)
+    probes.loc[late, "tensile_strength_1_MPa"] = 1.0
+    probes.to_parquet(folder / "probes.parquet")
+    event = events(folder)["remote", "curvature"]
+    assert np.isnan(event.stress)
+    assert event.note == "bends without softening"
 
 
 def test_first_crack_of_each_zone_is_told_by_its_place(make_hole):

@@ -145,6 +145,30 @@ def test_bound_is_the_load_at_which_the_elastic_gauge_reaches_strength(make_hole
     assert list(own["verdict"]) == [HOLDS] * 3
 
 
+def test_bound_is_that_of_the_gauge_that_carries_most(make_hole, data_folder):
+    """Of two gauges of the fan one carries half as much as the other."""
+    folder = make_hole("hole_r25.0")
+    probes = pd.read_parquet(folder / "probes.parquet")
+    probes.loc[probes["probe"] == "remote_01", "stress_xx_MPa"] *= 0.5
+    probes.to_parquet(folder / "probes.parquet")
+    table = hole_checks([BANDS, folder], data_folder)
+    keys = {"check": ELASTIC, "zone": "remote", "criterion": "curvature"}
+    assert cell(table, "reference_MPa", **keys) == pytest.approx(1.5 / 1.1)
+
+
+def test_value_below_the_bound_does_not_hold_though_its_interval_reaches_it(
+    make_hole, data_folder, tmp_path
+):
+    folder = make_hole("hole_r25.0")
+    found = hole_initiation([folder], data_folder)
+    sidewall = (found["zone"] == "sidewall") & (found["criterion"] == "curvature")
+    found.loc[sidewall, ["low_MPa", "initiation_MPa", "high_MPa"]] = [8.0, 9.0, 10.0]  # bound: 9.2
+    found.to_csv(tmp_path / "hole_initiation.csv", index=False)
+    table = hole_checks([BANDS, tmp_path / "hole_initiation.csv", folder], data_folder)
+    keys = {"check": ELASTIC, "zone": "sidewall", "criterion": "curvature"}
+    assert cell(table, "verdict", **keys) == FAILS
+
+
 def test_initiation_below_the_elastic_solution_does_not_hold(make_hole, data_folder):
     table = hole_checks([BANDS, make_hole("hole_r25.0", kinks={"sidewall": 6.0})], data_folder)
     keys = {"check": ELASTIC, "zone": "sidewall"}

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lithofrac.analysis.results import RESIDUAL, verdicts
+from lithofrac.analysis.results import QUALITY, verdicts
 
 pytestmark = pytest.mark.no_core
 ROOT = Path(__file__).parents[3]
@@ -66,7 +66,7 @@ def test_measured_values_stand_beside_the_paper(table):
 
 
 def test_worst_energy_residual_is_named_with_its_run(table):
-    row = table[table["quantity"] == RESIDUAL].iloc[0]
+    row = table[table["quantity"] == QUALITY["energy_residual"]].iloc[0]
     assert row["case"].startswith("worst of 4 runs: ")
     assert row["verdict"] == "holds"
 
@@ -78,7 +78,7 @@ def test_worst_residual_is_looked_for_in_runs_of_every_kind(make_run, data_folde
     summary = json.loads(path.read_text())
     path.write_text(json.dumps(summary | {"energy_residual": 2e-6, "kinetic_ratio_at_peak": None}))
     table = verdicts([BANDS, *(run / "summary.json" for run in runs)], data_folder)
-    row = table[table["quantity"] == RESIDUAL].iloc[0]
+    row = table[table["quantity"] == QUALITY["energy_residual"]].iloc[0]
     assert (row["case"], row["verdict"]) == ("worst of 2 runs: bar_wave", "does not hold")
     assert verdict_of(table, "worst of 1 runs: sandstone_triaxial_p00")["verdict"] == "holds"
 

@@ -43,6 +43,12 @@ def test_what_is_regained_after_complete_failure_is_no_stage():
     assert (stages.b, stages.c, stages.d) == (200, None, 200)
 
 
+@pytest.mark.parametrize(("risen", "d"), [(40.9, 400), (41.1, 200)])
+def test_rise_of_one_percent_of_the_first_peak_ends_the_fall_to_d(risen, d):
+    """A 100; below half at 40, then a ripple, then lower still."""
+    assert find_stages(*curve((0, 0), (1, 100), (2, 40), (3, risen), (4, 10))).d == d
+
+
 def test_curve_that_keeps_half_of_its_peak_has_no_complete_failure():
     stages = find_stages(*curve((0, 0), (1, 100), (2, 60), (3, 80)))
     assert (stages.b, stages.c, stages.d) == (200, 300, None)

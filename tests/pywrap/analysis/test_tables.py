@@ -1,5 +1,6 @@
 """Numbers behind the figures, from results with a strength known exactly (analysis/tables.py)."""
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,6 +13,7 @@ from lithofrac.analysis.kirsch_series import plate
 from lithofrac.analysis.runs import Run
 
 pytestmark = pytest.mark.no_core
+BANDS = Path(__file__).parents[3] / "reports" / "bands.csv"
 
 
 def test_strength_is_compared_with_the_line_of_its_own_table(make_run, data_folder):
@@ -141,7 +143,7 @@ def test_hoop_stress_is_held_against_the_plate_of_the_blocks_own_width(
 
 
 def test_run_time_lists_what_the_summary_holds(make_run, data_folder):
-    row = tables.run_time([make_run("sandstone_triaxial_p00")], data_folder).iloc[0]
+    row = tables.run_time([BANDS, make_run("sandstone_triaxial_p00")], data_folder).iloc[0]
     assert (row["case"], row["steps"], row["wall_seconds"]) == (
         "sandstone_triaxial_p00",
         100000,

@@ -104,7 +104,12 @@ def test_lost_cracks_and_none_at_all_are_said_in_the_figure(folder, data_folder)
     )
     assert "1 of 3 cracks have no face" in words(fractures.figure([folder], data_folder))
     table.iloc[:0].to_parquet(folder / "cracks.parquet")
-    assert "no cracks" in words(fractures.figure([folder], data_folder))
+    figure = fractures.figure([folder], data_folder)
+    assert "no cracks" in words(figure)
+    (panel,) = figure.axes  # neither a second panel nor a bar without colours
+    figure.draw_without_rendering()
+    title = panel.title.get_window_extent()
+    assert 0.0 < title.x0 < title.x1 < figure.bbox.width
 
 
 def test_rubble_that_flies_off_does_not_shrink_the_picture(make_cracked_run, data_folder):

@@ -4,8 +4,10 @@ import re
 from pathlib import Path
 from urllib.parse import unquote
 
+import pandas as pd
 import pytest
 
+from lithofrac.report import load_sheets
 from lithofrac.report.blocks import BLOCK
 
 pytestmark = pytest.mark.no_core
@@ -14,6 +16,7 @@ SHEETS = sorted((ROOT / "reports" / "sheets").glob("*.md"))
 PAGES = [ROOT / "README.md", *SHEETS]
 GUIDE = [ROOT / "CONTRIBUTING.md", *sorted((ROOT / "reports" / "guide").glob("*.md"))]
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+COLUMNS = "energy_residual,kinetic_ratio_at_peak,kinetic_ratio_before_peak,kinetic_verdict"
 FILL = "fill it: snakemake --cores all pages"
 
 
@@ -36,6 +39,35 @@ def test_links_and_pictures_of_a_page_are_there(page):
     for target, path, anchor in links(page):
         assert path.exists(), f"{page.name}: {target}"
         assert not anchor or anchor in anchors(path), f"{page.name}: {target}"
+
+
+def test_committed_sheets_show_the_pictures_of_the_gallery_that_stand_on_them():
+    pictures = [path.stem for path in (ROOT / "reports" / "gallery").glob("*.png")]
+    for sheet in load_sheets(ROOT / "reports" / "sheets"):
+        shown = re.findall(r"^!\[(\w+)\]\(\.\./gallery/\1\.png\)$", sheet.text, re.MULTILINE)
+        assert shown == sheet.figures(pictures), f"{sheet.name}: {FILL}"
+
+
+def test_every_claim_of_the_committed_table_has_a_link_to_its_figure():
+    text = (ROOT / "reports" / "sheets" / "0_claims.md").read_text(encoding="utf-8")
+    rows = [block for block in BLOCK.finditer(text) if block["name"] == "claims"]
+    cells = [line.split(" | ")[-1] for block in rows for line in block[0].splitlines()[3:-1]]
+    assert len(cells) == 50
+    for cell in cells:
+        assert re.fullmatch(r"\[\w+\.svg\]\(\.\./gallery/\w+\.png\) \|", cell), f"{cell}: {FILL}"
+
+
+def test_every_run_stands_in_a_table_of_run_times_of_a_sheet():
+    """With its ledger and its kinetic energy; the full suite, as the gallery holds it."""
+    table = pd.read_csv(ROOT / "reports" / "gallery" / "tables" / "run_time.csv")
+    listed = set()
+    for sheet in load_sheets(ROOT / "reports" / "sheets"):
+        for block in BLOCK.finditer(sheet.text):
+            if block["name"] == "run_time":
+                assert block["options"].endswith(COLUMNS)
+                listed |= {line.split(" | ")[0][2:] for line in block[0].splitlines()[3:-1]}
+    assert listed == set(table["case"])
+    assert len(listed) > 100
 
 
 def test_readme_has_links_to_check():

@@ -8,7 +8,7 @@ import pytest
 from lithofrac.data import DataError
 from lithofrac.report import category_of, load_sheets
 from lithofrac.report.captions import caption, is_of_a_run, template_of
-from lithofrac.report.sheets import Sheet, place
+from lithofrac.report.sheets import Sheet, pictured, place
 
 pytestmark = pytest.mark.no_core
 ROOT = Path(__file__).parents[3]
@@ -24,6 +24,20 @@ def test_sheet_shows_the_figures_it_names_each_once_in_its_order():
     shown = place(TEXT, NAMES, lambda name: f"[{name}]")
     assert re.findall(r"\[(\w+)\]", shown) == sheet.figures(NAMES)
     assert shown.index("[events_p2]") < shown.index("words") < shown.index("[mesh_p2]")
+
+
+def test_committed_sheet_shows_the_pictures_of_the_gallery_below_its_comments():
+    once = pictured(TEXT, ["punch", "mesh_p2"], "../gallery")
+    assert once == TEXT.replace(
+        "events_p* -->\n", "events_p* -->\n![punch](../gallery/punch.png)\n"
+    ).replace("*_p* -->\n", "*_p* -->\n![mesh_p2](../gallery/mesh_p2.png)\n")
+    assert pictured(once, ["punch", "mesh_p2"], "../gallery") == once
+    assert pictured(once, [], "../gallery") == TEXT
+
+
+def test_page_has_its_figures_in_place_of_the_pictures():
+    shown = place(pictured(TEXT, ["punch"], "../gallery"), NAMES, lambda name: f"[{name}]")
+    assert shown == place(TEXT, NAMES, lambda name: f"[{name}]")
 
 
 def test_figure_belongs_to_the_first_sheet_that_shows_it():
@@ -54,6 +68,20 @@ def test_caption_is_found_by_kind_and_filled_with_the_case(tmp_path):
     html = caption("energy_punch_gf60", CAPTIONS, tmp_path)
     assert "<strong>punch_gf60</strong>" in html
     assert "\n\n" not in html
+
+
+@pytest.mark.parametrize(
+    ("figure", "words"),
+    [
+        ("hole_gauges", "strain in microstrain"),
+        ("punch", "strain in percent"),
+        ("size_effect", "radii in mm"),
+        ("strength", "four lateral stiffnesses from 0.01 to 100 E"),
+        ("stress_strain", "plane strain under a soft pressure"),
+    ],
+)
+def test_caption_says_what_its_own_figure_shows(tmp_path, figure, words):
+    assert words in " ".join(caption(figure, CAPTIONS, tmp_path).split())
 
 
 def test_figure_of_a_case_that_did_not_run_is_an_old_one():

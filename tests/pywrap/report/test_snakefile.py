@@ -3,6 +3,7 @@
 It is run on a copy of the tree with a stand-in for the command line that only makes the files.
 """
 
+import ast
 import os
 import re
 import shutil
@@ -160,7 +161,7 @@ def test_edit_of_a_plot_draws_again_and_runs_nothing(tree):
     text = path.read_text()
     path.write_text(text + "\n")
     jobs = planned(tree)
-    assert not {"simulate", "bench", "run_quick"} & set(jobs)
+    assert not {"simulate", "bench", "run_quick", "table"} & set(jobs)
     assert (jobs["plot_suite"], jobs["plot_run"]) == (1, 2)  # of the two scenes
     path.write_text(text)
     assert planned(tree) == {}
@@ -194,6 +195,75 @@ def test_edit_of_the_core_reruns_everything(tree):
     path.write_text(text)
 
 
+def test_edit_of_an_analysis_makes_its_tables_again_and_runs_nothing(tree):
+    path = tree / "pywrap" / "lithofrac" / "analysis" / "tables.py"
+    text = path.read_text()
+    path.write_text(text + "\n")
+    jobs = planned(tree)
+    assert jobs["table"] > 10
+    assert not {"simulate", "bench"} & set(jobs)
+    path.write_text(text)
+
+
+@pytest.mark.parametrize("name", ["cli", "report/write", "config/reference", "intake"])
+def test_edit_that_decides_no_result_runs_nothing(tree, name):
+    path = tree / "pywrap" / "lithofrac" / f"{name}.py"
+    text = path.read_text()
+    path.write_text(text + "\n")
+    assert not {"simulate", "bench", "table"} & set(planned(tree))
+    path.write_text(text)
+
+
+@pytest.mark.parametrize(
+    ("output", "starts"),
+    [
+        ("out/runs/sandstone_triaxial_p00/summary.json", ("run", "scenes/make", "config/suite")),
+        ("out/bench/sandstone/triaxial_p00.parquet", ("point",)),
+    ],
+)
+def test_every_module_that_a_run_imports_makes_it_run_again(tree, output, starts):
+    """Such an input is newer than the result once it is edited; no other module is one."""
+    done = snakemake(tree, "--detailed-summary")
+    assert done.returncode == 0, done.stderr
+    header, *rows = (line.split("\t") for line in done.stdout.splitlines() if "\t" in line)
+    (row,) = (row for row in rows if row[0] == output)
+    inputs = row[header.index("input-file(s)")].split(",")
+    package = tree / "pywrap" / "lithofrac"
+    decide = imported_by(package, [package / f"{start}.py" for start in starts])
+    assert {file for file in inputs if re.search(r"(?<!__init__)\.py$", file)} == {
+        str(path.relative_to(tree)) for path in decide if path.name != "__init__.py"
+    }
+    assert {file for file in inputs if file.endswith(".f90")} == {
+        str(path.relative_to(tree))
+        for part in ("fortran", "pywrap/face")
+        for path in (tree / part).rglob("*.f90")
+    }
+
+
+def imported_by(package, files):
+    """Files of the package that some of its files import, directly or not, with those."""
+    found, left = set(), list(files)
+    while left:
+        path = left.pop()
+        if path in found:
+            continue
+        found.add(path)
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom) and not node.level:
+                names = [node.module, *(f"{node.module}.{name.name}" for name in node.names)]
+            elif isinstance(node, ast.Import):
+                names = [name.name for name in node.names]
+            else:
+                continue
+            for name in names:
+                top, *inside = name.split(".")
+                for depth in range(len(inside) + 1):  # a package is imported before what is in it
+                    here = package.joinpath(*inside[:depth])
+                    files = (here / "__init__.py", here.with_suffix(".py"))
+                    left += [file for file in files if top == package.name and file.is_file()]
+    return found
+
+
 def test_bad_suite_stops_before_any_job(tree):
     suite = tree / "configs" / "three.yaml"
     edited(suite, "confinement_MPa: 10", "confinment_MPa: 10")
@@ -222,8 +292,13 @@ def test_pages_are_filled_when_they_are_asked_for_and_only_then(tree):
     done = snakemake(tree, "--cores", "2", "pages")
     assert done.returncode == 0, done.stderr
     assert (tree / "README.md").exists()
-    shown = " ".join(f"out/gallery/{name}.png" for name in ("sandstone", "strength"))
-    assert said_by(tree)[-1] == f"gallery out {shown} --out reports/gallery"
+    names = ("sandstone", "stress_strain", "strength", "stiffness_sweep")
+    shown = " ".join(f"out/gallery/{name}.png" for name in names)
+    said = said_by(tree)
+    made = said.index(f"gallery out {shown} --out reports/gallery")
+    filled = [i for i, line in enumerate(said) if line.endswith(".md") and "reports/sheets" in line]
+    assert filled
+    assert min(filled) > made  # the sheets have links to what is in it
 
 
 @pytest.mark.parametrize("suite", ["suite", "suite_quick"])

@@ -9,6 +9,7 @@ from lithofrac.data import DataError
 from lithofrac.plots import draw
 from lithofrac.plots.draw import TABLES
 from lithofrac.report import write_report
+from lithofrac.report.markdown import to_html
 
 pytestmark = pytest.mark.no_core
 ROOT = Path(__file__).parents[3]
@@ -34,6 +35,7 @@ def out(make_run, make_bench, data_folder, tmp_path):
         "zigong_prediction": [SANDSTONE],
         "zigong_prediction_error": [SANDSTONE],
         "kirsch": [],
+        "run_time": [ROOT / "reports" / "bands.csv", *runs],
         "hole_checks": [ROOT / "reports" / "bands.csv", *runs],
         "variants": [ROOT / "configs" / "suite.yaml", *runs],
     }
@@ -83,8 +85,9 @@ def test_report_shows_the_figures_of_each_case_with_cracks(
     out, make_cracked_run, data_folder, tmp_path
 ):
     runs = [make_cracked_run("sandstone_soft_p00"), make_cracked_run("punch_discrete")]
-    for table in ("cracks", "run_time"):
-        draw(table, runs, out / "tables" / f"{table}.csv", data_folder)
+    bands = ROOT / "reports" / "bands.csv"
+    for table, inputs in {"cracks": runs, "run_time": [bands, *runs]}.items():
+        draw(table, inputs, out / "tables" / f"{table}.csv", data_folder)
     (out / "figures").mkdir()
     for name in ("events_punch_discrete", "fractures_sandstone_soft_p00", "fractures_of_old"):
         (out / "figures" / f"{name}.svg").touch()
@@ -143,6 +146,49 @@ def test_folder_without_tables_is_refused_and_nothing_is_written(tmp_path):
     with pytest.raises(DataError, match=r"tables: holds no \.csv"):
         write_report(tmp_path, tmp_path / "report.md", SHEETS)
     assert not list(tmp_path.iterdir())
+
+
+HREF = re.compile(r'<a href="([^"#]*)(?:#([^"]*))?">([^<]*)</a>')
+
+
+def test_web_pages_link_claims_to_page_and_figure_of_this_run(out):
+    """Every link of every page leads to a file that is there, and to a place in it."""
+    (out / "figures").mkdir()
+    for name in ("punch", "strength", "size_effect"):
+        (out / "figures" / f"{name}.svg").write_text("<svg/>")
+    pages = [out / "pages" / f"{sheet.stem}.html" for sheet in SHEETS.glob("*.md")]
+    for page in [*pages, out / "summary.html"]:
+        write_report(out, page, SHEETS)
+    claims = (out / "pages" / "0_claims.html").read_text()
+    assert '<a href="6_punch.html#punch">punch on page 6</a>' in claims
+    assert '<a href="pages/8_hole.html#size_effect">' in (out / "summary.html").read_text()
+    assert "<td>fracture_evolution.svg</td>" in claims  # which was not drawn
+    for page in [*pages, out / "summary.html"]:
+        for target, anchor, _ in HREF.findall(page.read_text()):
+            there = page.parent / target
+            assert there.exists(), f"{page.name}: {target}"
+            assert there.suffix != ".md", f"{page.name}: {target}"
+            assert not anchor or f'id="{anchor}"' in there.read_text()
+    assert 'href="6_punch.html">' in claims  # a sheet to its neighbour
+
+
+def test_pictures_of_the_gallery_are_left_out_of_web_pages(out, tmp_path):
+    sheets = tmp_path / "reports" / "sheets"
+    sheets.mkdir(parents=True)
+    (sheets / "6_punch.md").write_text(
+        "# Punch\n\n<!-- figures: punch -->\n![punch](../gallery/punch.png)\n\nwords\n"
+    )
+    for page in ("pages/6_punch.html", "summary.html", "report.md"):
+        write_report(out, out / page, sheets)
+        text = (out / page).read_text()
+        assert "gallery/punch.png" not in text
+        assert "words" in text
+
+
+def test_page_without_neighbours_keeps_the_words_of_its_links():
+    """In Snakemake's report a page is an address of its own, from which no other is reached."""
+    assert "location.protocol" in to_html("# a")
+    assert "link.replaceWith(link.textContent)" in to_html("# a")
 
 
 def test_figure_that_a_claim_names_is_linked_where_it_is_there(out):
