@@ -260,7 +260,7 @@ class _Session:
 
     def _look(self, step_before: int) -> None:
         """Hold the run against its guards, before its state becomes a checkpoint."""
-        for said in self.watch.look(step_before, self.recorder.energy[-1][-1]):
+        for said in self.watch.look(step_before):
             if self.warn is not None:
                 self.warn(said)
 

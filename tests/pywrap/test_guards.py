@@ -80,8 +80,8 @@ TRIGGERS = {  # problem, place, limits of a warning, limits of a stop; without: 
     "time_step": (torn, ELEMENT, {"time_step_warning": 0.95}, {"time_step_stop": 0.9}),
     "unconverged": (rubble, FASTEST, {"unconverged_warning": 0.01}, {"unconverged_stop": 0.02}),
     "energy_residual": (
-        rubble, FASTEST, {"energy_residual_warning": 1e-18}, {"energy_residual_stop": 1e-17},
-    ),  # the ledger closes to rounding: there is nothing larger to be found
+        rubble, FASTEST, {"energy_residual_warning": 1e-11}, {"energy_residual_stop": 1e-10},
+    ),
 }  # fmt: skip
 
 

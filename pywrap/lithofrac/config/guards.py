@@ -23,7 +23,7 @@ class GuardsSection(Section):
     """
 
     energy_residual_warning: Limit = 1e-4
-    """Inside minus outside of the energy ledger, over the largest energy so far."""
+    """Residual of the energy ledger and work of turns, over the largest energy so far."""
     energy_residual_stop: Limit = 1e-2
     """The same, where the run stops."""
     element_area_warning: Share = 0.1
