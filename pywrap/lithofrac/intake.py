@@ -74,6 +74,8 @@ def accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
     except (ConfigError, CoreError) as error:
         lines = str(error).splitlines()
         raise ConfigError("\n".join(f"{name}: {line}" for line in lines)) from None
+    if expected["steps"] < 1:
+        raise ConfigError(f"{name}: loading: the run takes no time, expected at least one step")
     if expected["steps"] > MOST_STEPS:
         key = "hold_transits" if getattr(case.loading, "speed_m_s", None) is None else "speed_m_s"
         raise ConfigError(

@@ -177,6 +177,14 @@ def test_meshes_that_no_machine_holds(refused, case, key, value):
     assert said.endswith(" elements, expected at most 2000000\n")
 
 
+@pytest.mark.parametrize("hold", ["0", "5e-324"])
+def test_run_that_takes_no_time(refused, hold):
+    settings = ["--set", "loading.ramp_transits=0", "--set", f"loading.hold_transits={hold}"]
+    assert refused("bar_wave", *settings) == (
+        "lithofrac: bar_wave: loading: the run takes no time, expected at least one step\n"
+    )
+
+
 def test_platens_that_no_machine_holds(refused):
     assert refused("punch_gf60", "--set", "platens.thickness_mm=1e7") == (
         "lithofrac: configs/cases/punch.yaml: platens.element_size_over_rock = 2: about 1.9e+08 "
