@@ -58,6 +58,7 @@ LEDGER = (
     "insertion_J",
     "relump_J",
     "reset_J",
+    "turning_J",
     "residual_J",
     "residual_relative",
 )
