@@ -118,6 +118,7 @@ def test_the_bench_has_the_strengths_that_the_fit_says(sandstone, data_folder):
         assert curve["axial_stress_MPa"].max() == pytest.approx(row.computed_MPa, rel=1e-6)
 
 
+@pytest.mark.one_build  # half a minute of the bench, which its own tests drive on every build
 def test_table_1_comes_back_at_its_own_rows(curves, sandstone):
     rows = np.array([e for e in sandstone.plastic_strain if e <= LAST])
     start = table_at(rows, curves, *elastic_constants(curves), NO_DILATION)
