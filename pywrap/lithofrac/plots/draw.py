@@ -13,6 +13,7 @@ from lithofrac.analysis import (
     options,
     results,
     size_law,
+    speed,
     tables,
 )
 from lithofrac.analysis.claims import claims
@@ -45,6 +46,7 @@ from lithofrac.plots import (
     style,
     variants,
 )
+from lithofrac.plots import speed as speed_figure
 from lithofrac.results.files import write_table, write_whole
 
 FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
@@ -71,6 +73,7 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "variants": variants.figure,
     "stability": stability.figure,
     "study": study.figure,
+    "speed": speed_figure.figure,
 }
 TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "single_element": tables.single_element,
@@ -95,6 +98,8 @@ TABLES: dict[str, Callable[[list[Path], Path], pd.DataFrame]] = {
     "results": results.verdicts,
     "claims": claims,
     "study": study_table,
+    "speed_rows": speed.speed_rows,
+    "speed_targets": speed.speed_targets,
 }
 MOVIES: dict[str, Callable[[list[Path], Path, Path], None]] = {"animation": animation.write}
 FORMATS = (".svg", ".png", ".pdf")

@@ -1,0 +1,180 @@
+"""Speed as a table: rows of the benchmark, and what was asked of it with a verdict."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from lithofrac.analysis.verdict import OPEN, verdict
+from lithofrac.data import DataError
+
+NEAR = 0.02  # relative, of a number of elements
+WITHIN = 2.0  # factor, of a predicted run time
+ROW_COLUMNS = (
+    "name",
+    "elements",
+    "threads",
+    "million_element_steps_per_core_second",
+    "lowest",
+    "highest",
+    "of_bare_kernel",
+    "speed_up",
+    "returns_per_step",
+    "million_returns_per_core_second",
+    "pairs",
+    "ns_per_pair",
+    "bytes_per_element_step",
+    "flops_per_element_step",
+    "roofline_fraction",
+)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What the three measurements have left, and the summaries of runs."""
+
+    benchmark: dict
+    leave_out: pd.DataFrame
+    growth: pd.DataFrame
+    runs: dict[str, dict]
+
+    def row(self, name: str, elements: int, threads: int = 1) -> dict:
+        """The row of the benchmark; nothing if it has none."""
+        for row in self.benchmark["rows"]:
+            same = row["name"] == name and row["threads"] == threads
+            if same and abs(row["elements"] / elements - 1.0) < NEAR:
+                return row
+        return {}
+
+
+@dataclass(frozen=True)
+class Target:
+    """One demand: `least` or `most` of a number."""
+
+    what: str
+    value: Callable[[Measured], float | None]
+    least: float | None = None
+    most: float | None = None
+    unit: str = ""
+
+    def row(self, measured: Measured) -> dict:
+        """Asked, measured, verdict."""
+        value = self.value(measured)
+        bound = self.least if self.least is not None else self.most
+        word = "at least" if self.least is not None else "at most"
+        good = value is not None and (value >= bound if self.least is not None else value <= bound)
+        return {
+            "target": self.what,
+            "asked": f"{word} {bound:g}{self.unit}",
+            "measured": value,
+            "verdict": OPEN if value is None else verdict(good),
+        }
+
+
+def speed_rows(inputs: list[Path], data: Path) -> pd.DataFrame:
+    """The rows of `benchmark.json`."""
+    table = pd.DataFrame(_read(inputs).benchmark["rows"])
+    return table[[name for name in ROW_COLUMNS if name in table]]
+
+
+def speed_targets(inputs: list[Path], data: Path) -> pd.DataFrame:
+    """What was asked of speed: asked, measured, verdict.
+
+    Inputs are `benchmark.json`, `leave_out.csv`, `growth.csv` and summaries of runs of the punch.
+    """
+    measured = _read(inputs)
+    return pd.DataFrame([target.row(measured) for target in TARGETS])
+
+
+def _read(inputs: list[Path]) -> Measured:
+    """Inputs by their names."""
+    by_name = {Path(path).name: Path(path) for path in inputs}
+    if "benchmark.json" not in by_name:
+        raise DataError("plot speed: expected benchmark.json among the inputs")
+    tables = [
+        pd.read_csv(by_name[name]) if name in by_name else pd.DataFrame()
+        for name in ("leave_out.csv", "growth.csv")
+    ]
+    runs = [Path(path) for path in inputs if Path(path).name == "summary.json"]
+    summaries = [json.loads(path.read_text(encoding="utf-8")) for path in runs]
+    benchmark = json.loads(by_name["benchmark.json"].read_text(encoding="utf-8"))
+    return Measured(benchmark, *tables, {summary["case"]: summary for summary in summaries})
+
+
+def _of_bare(name: str, elements: int) -> Callable[[Measured], float | None]:
+    return lambda measured: measured.row(name, elements).get("of_bare_kernel")
+
+
+def _gain(elements: int) -> Callable[[Measured], float | None]:
+    return lambda measured: measured.row("full_step", elements, 2).get("speed_up")
+
+
+def _time_of_two(measured: Measured) -> float | None:
+    gain = _gain(5_000)(measured)
+    return None if gain is None else 1.0 / gain
+
+
+def _returns(measured: Measured) -> float | None:
+    row = measured.row("full_step_yielding_100", 50_000)
+    return row.get("million_returns_per_core_second")
+
+
+def _core_seconds(case: str) -> Callable[[Measured], float | None]:
+    return lambda measured: measured.runs.get(case, {}).get("core_seconds")
+
+
+def _memory(measured: Measured) -> float | None:
+    return measured.benchmark.get("memory", {}).get("peak_bytes_per_element")
+
+
+def _other_bits(measured: Measured) -> float | None:
+    table = measured.leave_out
+    return None if table.empty else int((~table["same_bits"].astype(bool)).sum())
+
+
+def _unused(measured: Measured) -> float | None:
+    """Percent of an elastic step at 5,000 elements that is not for its elements."""
+    table, row = measured.growth, measured.row("elastic_step", 5_000)
+    if table.empty or not row:
+        return None
+    step = row["elements"] / row["million_element_steps_per_core_second"] / 1e6
+    return 100.0 * float(table["at_no_element"].dropna().iloc[0]) / step
+
+
+def _prediction(measured: Measured) -> float | None:
+    """Largest factor between predicted and measured time of a continuum run."""
+    if measured.leave_out.empty:
+        return None
+    own = measured.leave_out[measured.leave_out["continuum"].astype(bool)]["check_over_measured"]
+    return float(pd.concat([own, 1.0 / own]).max())
+
+
+TARGETS = (
+    *(
+        Target(
+            f"{name} over the bare kernel, {elements:,} elements", _of_bare(name, elements), least
+        )
+        for name, least, sizes in (
+            ("full_step", 0.6, (5_000, 50_000)),
+            ("elastic_step", 0.8, (5_000, 50_000)),
+            ("full_step_yielding_10", 0.3, (5_000, 50_000)),
+            ("discrete_step_pairs_0.1", 0.25, (5_000, 50_000)),
+            ("full_step", 0.5, (200_000,)),
+        )
+        for elements in sizes
+    ),
+    Target("returns per core-second, every element yielding", _returns, 6.0, unit=" million"),
+    Target("two threads over one, 50,000 elements", _gain(50_000), 1.6),
+    Target("two threads over one, 200,000 elements", _gain(200_000), 1.6),
+    Target("time of two threads over one, 5,000 elements", _time_of_two, most=1.05),
+    Target("punch_discrete", _core_seconds("punch_discrete"), most=60.0, unit=" core-seconds"),
+    Target("punch_gf60", _core_seconds("punch_gf60"), most=30.0, unit=" core-seconds"),
+    Target("memory at the peak", _memory, most=1000.0, unit=" bytes per element"),
+    Target("scenes whose bits hang on what is left out", _other_bits, most=0),
+    Target("of an elastic step, all that is not for elements", _unused, most=2.0, unit=" %"),
+    Target("predicted over measured time, or its inverse", _prediction, most=WITHIN),
+)
