@@ -13,14 +13,13 @@
 module lithofrac_material_return_map
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: no_return_map, ok
-   use lithofrac_material_active_sets, only: apex, edge_of, member_high, member_low, &
-      n_members, no_planes, plane_bit
+   use lithofrac_material_active_sets, only: apex, edge_of, main_plane, &
+      member_high, member_low, n_members, no_planes, plane_bit
    use lithofrac_material_fixed_strength, only: flow_type, free_choice, return_to_any, &
       return_to_set, trial_type
    use lithofrac_material_flow_split, only: least_flow_at_apex, least_flow_of_equal_maxima, &
       least_flow_of_equal_minima
    use lithofrac_material_mohr_coulomb, only: main_plane_yield, mobilise, mobilised_type
-   use lithofrac_material_pyramid_return, only: return_to_pyramid
    use lithofrac_material_rock, only: rock_type
    use lithofrac_material_tension_planes, only: softened_strength
    implicit none
@@ -93,15 +92,9 @@ contains
          return
       end if
 
-      found = .false.
-      mixed = .false.
-      if (.not. opens) then
-         call return_to_pyramid(rock, sorted, ep_eff, now, best%e, best%flow, found)
-      end if
-      if (.not. found) then
-         call search(rock, sorted, ep_eff, free_choice, best, mixed, found)
-         if (rock%explicit_coupling) call search_explicit(rock, sorted, ep_eff, best, mixed, found)
-      end if
+      if (.not. opens) best%flow%group = main_plane
+      call search(rock, sorted, ep_eff, free_choice, best, mixed, found)
+      if (rock%explicit_coupling) call search_explicit(rock, sorted, ep_eff, best, mixed, found)
       if (.not. found) then
          code = no_return_map
          return
