@@ -33,6 +33,8 @@ module lithofrac_material_pyramid_return
       logical :: done(pack)        !! false: this point needs the general search
       real(wp) :: e(pack)          !! effective plastic strain [-]
       real(wp) :: dep(pack, 3)     !! inelastic strain increments along the given axes [-]
+      real(wp) :: sin_phi(pack)    !! at that strain
+      real(wp) :: c_cos_phi(pack)  !! [Pa]
       integer :: active(pack)      !! planes with flow, bits of `plane_bit`; 0: elastic
    end type pyramid_return_type
 
@@ -348,10 +350,14 @@ contains
       type(sorted_flow_type), intent(in) :: flow
       type(pyramid_return_type), intent(inout) :: found
 
+      type(strength_type) :: now
       integer :: axis, i
       real(wp) :: volume, s
 
+      call strength_at(n, start, found%e, now)
       do i = 1, n
+         found%sin_phi(i) = now%sin_phi(i)
+         found%c_cos_phi(i) = now%c(i)*now%cos_phi(i)
          found%done(i) = flow%off(i) <= 0.0_wp &
             .and. flow%s(i, 1) >= max(flow%s(i, 2), flow%s(i, 3)) - start%tie(i)
       end do

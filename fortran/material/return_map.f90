@@ -61,10 +61,9 @@ contains
       integer, intent(out) :: code                !! `ok` or `no_return_map`
 
       type(trial_type) :: sorted
-      type(mobilised_type) :: now
       type(sample_type) :: best
       integer :: order(3)
-      logical :: found, mixed, opens
+      logical :: found, mixed
       real(wp) :: rounding
 
       dep = 0.0_wp
@@ -84,15 +83,9 @@ contains
          + (abs(sorted%t(1)) + abs(sorted%t(3)) + rock%strength_scale)/sorted%g2)
       sorted%compression = rock%compression
       sorted%total = rock%total_hardening
-      opens = any(sorted%t - sorted%ft > rock%yield_tolerance)
-      if (rock%compression) then
-         call mobilise(rock, ep_eff, now)
-         if (.not. opens .and. main_plane_yield(now, sorted%t) <= rock%yield_tolerance) return
-      else if (.not. opens) then
-         return
-      end if
+      best%flow = likely_flow(rock, sorted, ep_eff)
+      if (best%flow%group == no_planes .and. best%flow%tension == 0) return
 
-      if (.not. opens) best%flow%group = main_plane
       call search(rock, sorted, ep_eff, free_choice, best, mixed, found)
       if (rock%explicit_coupling) call search_explicit(rock, sorted, ep_eff, best, mixed, found)
       if (.not. found) then
@@ -104,6 +97,26 @@ contains
       dep_compressive(order) = best%flow%x
       active = active_mask(best%flow, order, mixed)
    end subroutine return_to_surface
+
+   !> The planes that the trial stress lies beyond: most often those that it returns to.
+   pure function likely_flow(rock, trial, e_old) result(flow)
+      type(rock_type), intent(in) :: rock
+      type(trial_type), intent(in) :: trial
+      real(wp), intent(in) :: e_old
+      type(flow_type) :: flow
+
+      type(mobilised_type) :: now
+      integer :: i
+
+      do i = 1, 3
+         if (trial%t(i) - trial%ft(i) > rock%yield_tolerance) flow%tension = ibset(flow%tension, i - 1)
+      end do
+      flow%group = no_planes
+      if (.not. rock%compression) return
+      call mobilise(rock, e_old, now)
+      ! Not "greater than": a stress that is not a number is not elastic.
+      if (.not. main_plane_yield(now, trial%t) <= rock%yield_tolerance) flow%group = main_plane
+   end function likely_flow
 
    !> Smallest root of F, walking the segments of the tables from knot to knot.
    !> Where g grows, steps of -F cannot pass the first root; they double inside a segment.

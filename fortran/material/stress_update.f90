@@ -52,7 +52,7 @@ contains
    !> share their stress, bit 11 a step that was cut (then the planes of all parts).
    !> On `code == no_return_map` point and stress stay as they were at the start of the step.
    pure subroutine update_pack(rock, count, softening, old, trial, point, sigma, dep, &
-      dep_compressive, active, code)
+      dep_compressive, strength, active, code)
       type(rock_type), intent(in) :: rock
       integer, intent(in) :: count                 !! points, 1 to `pack`
       real(wp), intent(in) :: softening(pack)      !! H, not positive [Pa]
@@ -62,6 +62,7 @@ contains
       real(wp), intent(out) :: sigma(4, pack)      !! stress at the end of the step [Pa]
       real(wp), intent(out) :: dep(4, pack)        !! inelastic strain increment [-]
       real(wp), intent(out) :: dep_compressive(4, pack)  !! its Mohr-Coulomb part [-]
+      real(wp), intent(out) :: strength(2, pack)   !! sin(phi), c cos(phi) [Pa] of points that flow
       integer, intent(out) :: active(pack)         !! planes with flow
       integer, intent(out) :: code(pack)           !! `ok` or `no_return_map`
 
@@ -89,12 +90,15 @@ contains
          if (.not. quick%done(i)) then
             call update_stress(rock, softening(i), old(:, i), trial(:, i), point(i), sigma(:, i), &
                dep(:, i), dep_compressive(:, i), active(i), code(i))
+            if (active(i) /= 0) call strength_of_band(rock, softening(i), point(i)%ep_eff, &
+               strength(1, i), strength(2, i))
             cycle
          end if
          point(i)%axis = axis(i, :)
          active(i) = quick%active(i)
          if (active(i) == 0) cycle
          point(i)%ep_eff = quick%e(i)
+         strength(:, i) = [quick%sin_phi(i), quick%c_cos_phi(i)]
          call apply_flow(rock, softening(i), trial(:, i), quick%dep(i, :), point(i), sigma(:, i), &
             dep(:, i))
          dep_compressive(:, i) = dep(:, i)

@@ -7,7 +7,7 @@ module lithofrac_mechanics_internal_force
    use lithofrac_base_status, only: ok
    use lithofrac_material_pyramid_return, only: pack, padded
    use lithofrac_material_rock, only: rock_type
-   use lithofrac_material_stress_update, only: point_type, strength_of_band, update_pack
+   use lithofrac_material_stress_update, only: point_type, update_pack
    use lithofrac_mechanics_chunks, only: chunks_type, width
    use lithofrac_mechanics_fields, only: fields_type, inelastic_type
    use lithofrac_mechanics_kinematics, only: elastic_stress, gather, gather_previous, &
@@ -261,47 +261,49 @@ contains
       type(failure_type), intent(inout) :: failure
 
       type(point_type) :: point(pack)
-      real(wp) :: old(4, pack), trial(4, pack), sigma(4, pack), dep(4, pack)
-      real(wp) :: dep_compressive(4, pack), softening(pack)
+      real(wp), dimension(4, pack) :: old, trial, sigma, dep, dep_compressive
+      real(wp) :: strength(2, pack), softening(pack)
       integer :: active(pack), code(pack), i, lane
 
       call previous_stress(chunks, chunk, lanes, rock, fields, dt, state, old)
-      do i = 1, size(lanes)
-         lane = lanes(i)
-         trial(:, i) = stress(lane, :)
-         softening(i) = state%softening(lane, chunk)
-         point(i)%ep_eff = state%plastic_strain(lane, chunk)
-         point(i)%ft = state%ft(lane, :, chunk)
-         point(i)%opening = state%opening(lane, :, chunk)
-         point(i)%axis = state%axis(lane, :, chunk)
-         point(i)%crack = state%crack(lane, :, chunk)
-      end do
-      call update_pack(rock, size(lanes), softening, old, trial, point, sigma, dep, &
-         dep_compressive, active, code)
-      do i = 1, size(lanes)
-         lane = lanes(i)
-         if (code(i) /= ok) then
-            if (failure%code == ok) then
-               failure = failure_type(code(i), chunks%element(lane, chunk), trial(:, i))
+      associate (ep_eff => state%plastic_strain(:, chunk), ft => state%ft(:, :, chunk), &
+            opening => state%opening(:, :, chunk), axis => state%axis(:, :, chunk), &
+            crack => state%crack(:, :, chunk), dissipated => state%dissipated(:, :, chunk), &
+            strain => state%strain(:, :, chunk))
+         do i = 1, size(lanes)
+            lane = lanes(i)
+            trial(:, i) = stress(lane, :)
+            softening(i) = state%softening(lane, chunk)
+            point(i) = point_type(ep_eff(lane), ft(lane, :), opening(lane, :), axis(lane, :), &
+               crack(lane, :))
+         end do
+         call update_pack(rock, size(lanes), softening, old, trial, point, sigma, dep, &
+            dep_compressive, strength, active, code)
+         do i = 1, size(lanes)
+            lane = lanes(i)
+            if (code(i) /= ok) then
+               if (failure%code == ok) then
+                  failure = failure_type(code(i), chunks%element(lane, chunk), trial(:, i))
+               end if
+               cycle
             end if
-            cycle
-         end if
-         stress(lane, :) = sigma(:, i)
-         state%strain(lane, :, chunk) = state%strain(lane, :, chunk) + dep(:, i)
-         state%dissipated(lane, 1, chunk) = state%dissipated(lane, 1, chunk) &
-            + 0.5_wp*dot_product(old(:, i) + sigma(:, i), dep_compressive(:, i))
-         state%dissipated(lane, 2, chunk) = state%dissipated(lane, 2, chunk) &
-            + 0.5_wp*dot_product(old(:, i) + sigma(:, i), dep(:, i) - dep_compressive(:, i))
-         if (point(i)%ep_eff > state%plastic_strain(lane, chunk)) then
-            call strength_of_band(rock, softening(i), point(i)%ep_eff, &
-               state%sin_phi(lane, chunk), state%c_cos_phi(lane, chunk))
-         end if
-         state%plastic_strain(lane, chunk) = point(i)%ep_eff
-         state%ft(lane, :, chunk) = point(i)%ft
-         state%opening(lane, :, chunk) = point(i)%opening
-         state%axis(lane, :, chunk) = point(i)%axis
-         state%crack(lane, :, chunk) = point(i)%crack
-      end do
+            stress(lane, :) = sigma(:, i)
+            strain(lane, :) = strain(lane, :) + dep(:, i)
+            dissipated(lane, 1) = dissipated(lane, 1) &
+               + 0.5_wp*dot_product(old(:, i) + sigma(:, i), dep_compressive(:, i))
+            dissipated(lane, 2) = dissipated(lane, 2) &
+               + 0.5_wp*dot_product(old(:, i) + sigma(:, i), dep(:, i) - dep_compressive(:, i))
+            if (point(i)%ep_eff > ep_eff(lane)) then
+               state%sin_phi(lane, chunk) = strength(1, i)
+               state%c_cos_phi(lane, chunk) = strength(2, i)
+            end if
+            ep_eff(lane) = point(i)%ep_eff
+            ft(lane, :) = point(i)%ft
+            opening(lane, :) = point(i)%opening
+            axis(lane, :) = point(i)%axis
+            crack(lane, :) = point(i)%crack
+         end do
+      end associate
    end subroutine return_lanes
 
    !> Stress of some elements at the start of the step [Pa]: recomputed, because nearly no element

@@ -297,7 +297,7 @@ contains
       type(point_type) :: point(pack)
       integer :: active_lane(pack), code_lane(pack), count, first, i, lane
       real(c_double) :: compressive(4, pack), flow(4, pack), now(4, pack), old(4, pack)
-      real(c_double) :: slope(pack), trial(4, pack)
+      real(c_double) :: slope(pack), strength(2, pack), trial(4, pack)
 
       call make_rock(constants, table, options, rock, code, message)
       if (code /= ok) return
@@ -314,7 +314,7 @@ contains
             trial(:3, lane) = trial(:3, lane) &
                + rock%lame*(strain(1, i) + strain(2, i) + strain(3, i))
          end do
-         call update_pack(rock, count, slope, old, trial, point, now, flow, compressive, &
+         call update_pack(rock, count, slope, old, trial, point, now, flow, compressive, strength, &
             active_lane, code_lane)
          do lane = 1, count
             i = first + lane - 1
