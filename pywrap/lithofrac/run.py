@@ -21,7 +21,7 @@ from lithofrac._build import NATIVE
 from lithofrac.analysis.crack_faces import find_faces
 from lithofrac.analysis.frames import MM, Frame
 from lithofrac.analysis.run_numbers import finite, peak, ratio, residual
-from lithofrac.config.cost import ELASTIC_RATE, YIELDING_RATE
+from lithofrac.config.cost import run_seconds
 from lithofrac.core import Run
 from lithofrac.errors import CoreError, GuardError
 from lithofrac.guards import Watch
@@ -48,14 +48,14 @@ def plan(problem: Problem) -> dict:
     run = Run(problem)
     elements = len(problem.mesh.triangles)
     steps = math.ceil(problem.end_time / run.dt)
-    rate = YIELDING_RATE if any(m.options[3] for m in problem.materials) else ELASTIC_RATE
+    elastic = not any(m.options[3] for m in problem.materials)
     return {
         "elements": elements,
         "nodes": len(problem.mesh.nodes),
         "bodies": len(problem.mesh.body_names),
         "time_step_s": run.dt,
         "steps": steps,
-        "expected_seconds": elements * steps / rate,
+        "expected_seconds": run_seconds(elements, steps, problem.records, elastic),
         "uses": {
             "axisymmetry": problem.axisymmetric,
             "yield check": any(m.options[3] for m in problem.materials),

@@ -6,10 +6,11 @@ SPEED = [
     f"{OUT}/tables/growth.csv",
 ]
 SPEED_SOURCES = sorted(map(str, Path("pywrap/lithofrac/benchmark").glob("*.py")))
-PUNCHES = [run for run in RUNS if run.split("/")[-2] in ("punch_discrete", "punch_gf60")]
+TIMED = ["punch_discrete", "punch_gf60"]  # a coarse suite has not both
+PUNCHES = expand(f"{OUT}/runs/{{case}}/summary.json", case=TIMED) if {*TIMED} <= {*CASES} else []
 
 
-rule benchmark:
+rule make_benchmark:
     input:
         DECIDING,
         SPEED_SOURCES,
@@ -24,7 +25,7 @@ rule benchmark:
         "python -m lithofrac.benchmark --out {output} > {log} 2>&1"
 
 
-rule leave_out:
+rule make_leave_out:
     input:
         DECIDING,
         SPEED_SOURCES,
@@ -40,7 +41,7 @@ rule leave_out:
         "python -m lithofrac.benchmark.leave_out {input.suite} --out {output} > {log} 2>&1"
 
 
-rule growth:
+rule make_growth:
     input:
         DECIDING,
         SPEED_SOURCES,
@@ -56,7 +57,7 @@ rule growth:
 
 
 rule table_speed:
-    # Only tables that were made of runs stand in `TABLES`; these are of measurements.
+    # Not in `TABLES`, all of which the suite makes.
     input:
         TABLING,
         measured=SPEED,

@@ -24,7 +24,7 @@ def line(row: dict) -> str:
         said += f", {row['million_returns_per_core_second']:.2f} million returns/s"
     if "pairs" in row:
         said += f", {row['pairs']} pairs at {row['ns_per_pair']:.0f} ns,"
-        said += f" {row['time_over_no_contact']:.2f} of the time without"
+        said += f" {row['time_over_uncut']:.2f} of the time uncut"
     if "roofline_fraction" in row:
         said += f", {row['roofline_fraction']:.2f} of the roof"
     return said

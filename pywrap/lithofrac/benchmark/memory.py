@@ -4,8 +4,6 @@ python -m lithofrac.benchmark.memory CELLS
 """
 
 import json
-import os
-import resource
 import sys
 from pathlib import Path
 
@@ -14,18 +12,22 @@ from lithofrac.config import Material
 from lithofrac.core import Run
 
 
-def resident() -> int:
-    """Bytes of this process in memory, now."""
-    pages = int(Path("/proc/self/statm").read_text().split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE")
+def used() -> dict[str, int]:
+    """Bytes of this process in memory, now and at most.
+
+    Not from `getrusage`, whose maximum a process takes over from the one that started it.
+    """
+    lines = Path("/proc/self/status").read_text(encoding="utf-8").splitlines()
+    found = dict(line.split(":", 1) for line in lines)
+    names = {"resident": "VmRSS", "peak": "VmHWM"}
+    return {name: 1024 * int(found[key].split()[0]) for name, key in names.items()}
 
 
 def main(cells: int) -> None:
     """Print elements, resident and peak bytes as JSON."""
     run = Run(pressed(square(cells), Material.load(ROCK)))
     stepper(run)(EVERY)
-    peak = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    print(json.dumps({"elements": run.sizes().elements, "resident": resident(), "peak": peak}))
+    print(json.dumps({"elements": run.sizes().elements} | used()))
 
 
 if __name__ == "__main__":

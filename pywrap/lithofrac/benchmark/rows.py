@@ -131,7 +131,7 @@ def yielding_rows(cells: int, repeat: int) -> list[dict]:
 
 
 def discrete_rows(cells: int, pairs: str, repeat: int) -> list[dict]:
-    """Rows of a step with contact; also pairs, what one costs, and the time over that without.
+    """Rows of a step with contact; also pairs, what one costs, and the time over that uncut.
 
     Parameters
     ----------
@@ -144,11 +144,12 @@ def discrete_rows(cells: int, pairs: str, repeat: int) -> list[dict]:
     cut = blocks.in_pieces(mesh, PIECES[pairs][cells] * blocks.SIDE / cells)
     elements = len(cut.triangles)
     touching = Contact(default_friction=blocks.FRICTION)
+    uncut = blocks.pieces(mesh, rock, contact=touching)
     runs = {threads: blocks.pieces(cut, rock, contact=touching) for threads in THREADS}
     name = f"discrete_step_pairs_{pairs}"
     subjects = {
         BARE: Subject(blocks.bare(mesh, rock), has_setup=True),
-        "alone": Subject(blocks.stepper(blocks.pieces(cut, rock)), count=CONTACT_STEPS),
+        "uncut": Subject(blocks.stepper(uncut), count=CONTACT_STEPS),
     }
     for threads, run in runs.items():
         steps = blocks.stepper(run, threads)
@@ -156,15 +157,15 @@ def discrete_rows(cells: int, pairs: str, repeat: int) -> list[dict]:
     speeds = race(subjects, elements, repeat)
     rows = []
     for threads, run in runs.items():
-        own, alone = speeds[key_of(name, threads)], speeds["alone"]
+        own, uncut = speeds[key_of(name, threads)], speeds["uncut"]
         count = run.contact_statistics().pairs_max
-        excess = [1 / a - 1 / b for a, b in zip(own.core, alone.core, strict=True)]
+        excess = [1 / a - 1 / b for a, b in zip(own.core, uncut.core, strict=True)]
         rows.append(
             row(name, elements, threads, own, speeds[BARE])
             | {
                 "pairs": count,
                 "ns_per_pair": statistics.median(excess) * 1e3 * elements / count,
-                "time_over_no_contact": median_ratio(alone.core, own.core),
+                "time_over_uncut": median_ratio(uncut.core, own.core),
             }
         )
     return with_threads(rows, speeds)

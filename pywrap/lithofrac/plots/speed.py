@@ -16,7 +16,7 @@ SERIES = {
     "elements": (style.BLUE, "o", "a step, over elements"),
     "test": (style.ORANGE, "s", "a test, over elements"),
     "steps": (style.GREEN, "^", "5,000 elements, over steps"),
-    "cracks": (style.RED, "D", "contact in a step, over cut edges"),
+    "cracks": (style.RED, "D", "more in a step, over cut edges"),
     "threads": (style.PURPLE, "v", "a step on the wall, over threads"),
 }
 INPUTS = ("benchmark.json", "leave_out.csv", "growth.csv")

@@ -352,3 +352,12 @@ def test_stability_is_made_when_it_is_asked_for_and_only_then(tree):
     jobs = planned(tree, "stability")
     assert (jobs["make_stability"], jobs["plot_stability"], jobs["stability"]) == (1, 1, 1)
     assert not {"simulate", "page"} & set(jobs)
+
+
+def test_speed_is_measured_when_it_is_asked_for_and_one_job_at_a_time(tree):
+    assert "make_benchmark" not in planned(tree)
+    jobs = planned(tree, "speed")
+    made = ("make_benchmark", "make_leave_out", "make_growth", "table_speed", "plot_speed")
+    assert [jobs[name] for name in made] == [1] * 5
+    rules = (tree / "pywrap" / "rules" / "speed.smk").read_text(encoding="utf-8")
+    assert rules.count("    threads: 64") == 3

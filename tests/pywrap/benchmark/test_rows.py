@@ -1,0 +1,108 @@
+"""Rows of the benchmark (pywrap/lithofrac/benchmark/) on blocks too small to tell a speed."""
+
+import numpy as np
+import pytest
+
+from lithofrac.benchmark import blocks, machine, race, rows
+from lithofrac.config import Material
+
+SPEED = "million_element_steps_per_core_second"
+
+
+@pytest.fixture(autouse=True)
+def short(monkeypatch):
+    monkeypatch.setattr(race, "ELEMENT_STEPS", 1e4)
+    monkeypatch.setattr(rows, "CONTACT_STEPS", 20)
+    monkeypatch.setattr(machine, "MATRIX", 16)
+
+
+def test_pieces_keep_the_area_and_share_no_node():
+    mesh = blocks.rectangle(0.08, 0.08, 0.01, structured=True, seed=1)
+    cut = blocks.in_pieces(mesh, 0.02)
+    assert len(cut.nodes) == 16 * 9
+    np.testing.assert_allclose(cut.areas(), mesh.areas())
+    np.testing.assert_array_equal(cut.nodes[cut.triangles], mesh.nodes[mesh.triangles])
+
+
+def test_a_discrete_row_tells_what_its_pairs_cost(monkeypatch):
+    monkeypatch.setattr(rows, "PIECES", {"some": {8: 4}})
+    one, two = rows.discrete_rows(cells=8, pairs="some", repeat=2)
+    assert one["name"] == "discrete_step_pairs_some"
+    assert one["elements"] == 128
+    assert 16 <= one["pairs"] <= 40
+    assert np.isfinite(one["ns_per_pair"])
+    assert one["time_over_uncut"] > 0.0
+    assert one["lowest"] <= one[SPEED] <= one["highest"]
+    assert (one["threads"], two["threads"]) == (1, 2)
+    assert one["pairs"] == two["pairs"]  # threads change no bit
+
+
+def test_continuum_rows_are_paired_with_the_bare_kernel():
+    found = rows.continuum_rows(cells=8, repeat=1)
+    assert found[0]["name"] == "bare_elastic_kernel"
+    assert found[0]["of_bare_kernel"] == 1.0
+    names = ("elastic_step", "full_step", "axisymmetric_step")
+    expected = [(name, threads) for name in names for threads in (1, 2)]
+    assert [(row["name"], row["threads"]) for row in found[1:]] == expected
+    for row in found:
+        # one window: the ratio is that of the two speeds
+        assert row["of_bare_kernel"] == pytest.approx(row[SPEED] / found[0][SPEED])
+        assert ("speed_up" in row) == (row["threads"] == 2)
+        assert ("roofline_fraction" in row) == (row["threads"] == 1)
+
+
+def test_a_layer_yields_in_every_step_and_nothing_else_does():
+    found = rows.yielding_rows(cells=8, repeat=2)
+    assert [row["returns_per_step"] for row in found] == [1, 1, 13, 13, 128, 128]
+    for row in found:
+        assert row["only_these_yield"]
+        expected = row[SPEED] * row["returns_per_step"] / row["elements"]
+        assert row["million_returns_per_core_second"] == pytest.approx(expected)
+
+
+def test_a_block_below_its_strength_does_not_yield():
+    run = blocks.Run(blocks.pressed(blocks.square(8), Material.load("quartzite")))
+    assert [len(found) for found in blocks.elements_that_yield(run, 3)] == [0, 0, 0]
+
+
+def test_setup_is_no_part_of_a_step():
+    """Twice the wait of the steps is set-up: without it they are three times as fast."""
+    clock = [0.0]
+
+    def steps(count):
+        clock[0] += 2.0 + 0.01 * count
+
+    subjects = {
+        "with": race.Subject(steps, count=100),
+        "without": race.Subject(steps, count=100, has_setup=True),
+    }
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(race.time, "process_time", lambda: clock[0])
+        patch.setattr(race.time, "perf_counter", lambda: clock[0])
+        speeds = race.race(subjects, elements=1_000_000, repeat=2)
+    assert speeds["with"].core == pytest.approx([100.0 / 3.0] * 2)
+    assert speeds["without"].wall == pytest.approx([100.0] * 2)
+    assert race.seconds_a_step(speeds["without"].core, 1_000_000) == pytest.approx(0.01)
+
+
+def test_all_steps_are_counted_in_bytes_and_flops():
+    assert set(machine.BYTES) == set(machine.FLOPS)
+    # 11 reals less stored stress, 6 indices more: hand count of the full step
+    assert machine.BYTES["full_step"] == 8 * (5 + 0.5 * (6 + 18)) + 4 * 6
+    assert machine.roofline("full_step_yielding_10", 128, 1.0, 1e9, 1) == {}
+
+
+def test_the_share_of_the_roof_is_of_the_lower_one(monkeypatch):
+    monkeypatch.setattr(machine, "bandwidth", lambda size, repeat: 1e9)
+    found = machine.roofline("full_step", 128, 1.0, 1e15, 1)
+    assert found["roofline_fraction"] == pytest.approx(1e6 / (1e9 / machine.BYTES["full_step"]))
+    found = machine.roofline("full_step", 128, 1.0, 1e6, 1)
+    assert found["roofline_fraction"] == pytest.approx(machine.FLOPS["full_step"])
+
+
+@pytest.mark.one_build
+def test_memory_is_that_of_the_elements(monkeypatch):
+    monkeypatch.setattr(machine, "MEMORY_CELLS", (8, 64))
+    used = machine.memory()
+    assert used["elements"] == 8192
+    assert 100 < used["resident_bytes_per_element"] <= used["peak_bytes_per_element"] < 1e5
