@@ -21,7 +21,7 @@ from lithofrac._build import NATIVE
 from lithofrac.analysis.crack_faces import find_faces
 from lithofrac.analysis.frames import MM, Frame
 from lithofrac.analysis.run_numbers import finite, peak, ratio, residual
-from lithofrac.config.cost import run_seconds
+from lithofrac.config.cost import rate_of, run_seconds
 from lithofrac.core import Run
 from lithofrac.errors import CoreError, GuardError
 from lithofrac.guards import Watch
@@ -48,17 +48,18 @@ def plan(problem: Problem) -> dict:
     run = Run(problem)
     elements = len(problem.mesh.triangles)
     steps = math.ceil(problem.end_time / run.dt)
-    elastic = not any(m.options[3] for m in problem.materials)
+    yields = any(m.options[3] for m in problem.materials)
+    rate = rate_of(yields, problem.contact is not None, problem.axisymmetric)
     return {
         "elements": elements,
         "nodes": len(problem.mesh.nodes),
         "bodies": len(problem.mesh.body_names),
         "time_step_s": run.dt,
         "steps": steps,
-        "expected_seconds": run_seconds(elements, steps, problem.records, elastic),
+        "expected_seconds": run_seconds(elements, steps, problem.records, rate),
         "uses": {
             "axisymmetry": problem.axisymmetric,
-            "yield check": any(m.options[3] for m in problem.materials),
+            "yield check": yields,
             "Mohr-Coulomb planes": any(m.options[3] and m.options[2] for m in problem.materials),
             "regularised softening": any(m.reference_width > 0.0 for m in problem.materials),
             "damping": problem.damping.fraction > 0.0 or bool(problem.damping.alpha),

@@ -7,7 +7,11 @@ SPEED = [
 ]
 SPEED_SOURCES = sorted(map(str, Path("pywrap/lithofrac/benchmark").glob("*.py")))
 TIMED = ["punch_discrete", "punch_gf60"]  # a coarse suite has not both
-PUNCHES = expand(f"{OUT}/runs/{{case}}/summary.json", case=TIMED) if {*TIMED} <= {*CASES} else []
+PUNCHES = (
+    expand(f"{OUT}/runs/{{case}}/summary.json", case=TIMED)
+    if {*TIMED} <= {*CASES}
+    else []
+)
 
 
 rule make_benchmark:

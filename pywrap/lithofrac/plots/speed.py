@@ -94,9 +94,9 @@ def _draw_prediction(panel: Axes, table: pd.DataFrame) -> None:
     for continuum, colour, marker, words in marks:
         own = table[table["continuum"].astype(bool) == continuum]
         panel.loglog(
-            own["needed_seconds"], own["check_seconds"], marker, ms=4, color=colour, label=words
+            own["run_seconds"], own["check_seconds"], marker, ms=4, color=colour, label=words
         )
-    ends = np.array([table["needed_seconds"].min(), table["needed_seconds"].max()])
+    ends = np.array([table["run_seconds"].min(), table["run_seconds"].max()])
     for factor, line in ((1.0, "-"), (0.5, "--"), (2.0, "--")):
         panel.loglog(ends, factor * ends, line, color=style.BLACK, lw=0.9)
     panel.legend(loc="upper left", fontsize=7)

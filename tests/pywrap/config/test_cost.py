@@ -3,7 +3,14 @@
 import pytest
 
 from lithofrac.config import find_case, load_case, load_suite, predicted
-from lithofrac.config.cost import BASE_MB, MOST_THREADS, START_MINUTES, Cost
+from lithofrac.config.cost import (
+    BASE_MB,
+    MOST_THREADS,
+    RECORD_SECONDS,
+    START_MINUTES,
+    Cost,
+    run_seconds,
+)
 from lithofrac.run import plan
 from lithofrac.scenes.make import make_mesh, make_problem
 
@@ -28,6 +35,22 @@ def test_prediction_is_near_the_plan_of_the_mesh(name):
     told, planned = predicted(case), plan(make_problem(case, make_mesh(case)))
     assert told.elements == pytest.approx(planned["elements"], rel=0.25, abs=2)
     assert 1 / 1.5 < told.steps / planned["steps"] < 1.5
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_check_and_the_scheduler_predict_by_the_same_rates(name):
+    """Their elements and steps differ, and with them their seconds, by no more than these."""
+    case = load_suite(QUICK).case(name)
+    told, planned = predicted(case), plan(make_problem(case, make_mesh(case)))
+    work = told.elements * told.steps / (planned["elements"] * planned["steps"])
+    low, high = sorted([1.0, work, told.steps / planned["steps"]])[::2]
+    assert 0.99 * low < told.seconds / planned["expected_seconds"] < 1.01 * high
+
+
+def test_records_cost_only_where_there_are_steps():
+    many = run_seconds(1, 50_000, 1000, 1e9) - run_seconds(1, 50_000, 500, 1e9)
+    assert many == pytest.approx(500 * RECORD_SECONDS)
+    assert run_seconds(1, 100, 1000, 1e9) == run_seconds(1, 100, 100, 1e9)
 
 
 def test_half_the_edge_length_is_nearly_eight_times_the_work():

@@ -25,7 +25,7 @@ def measured(tmp_path):
         "case": ["kirsch", "punch_discrete"],
         "continuum": [True, False],
         "forced_over_needed": [2.1, 1.2],
-        "needed_seconds": [0.1, 2.0],
+        "run_seconds": [0.1, 2.0],
         "check_seconds": [0.15, 3.0],
     }
     growth = [
