@@ -56,7 +56,7 @@ def plan(problem: Problem) -> dict:
         "bodies": len(problem.mesh.body_names),
         "time_step_s": run.dt,
         "steps": steps,
-        "expected_seconds": run_seconds(elements, steps, problem.records, rate),
+        "expected_seconds": run_seconds(elements, steps, problem.records, problem.fields, rate),
         "uses": {
             "axisymmetry": problem.axisymmetric,
             "yield check": yields,

@@ -25,11 +25,11 @@ from lithofrac.config.scene import (
 # Element-steps per second of one core, from continuum runs of the suite: nothing yields; a part
 # between bodies that touch, where most stays elastic; a specimen in plane strain, all of which
 # yields beyond its peak (5.4e6 to 11e6); the same in axisymmetry (2.5e6 without confinement, where
-# it fails in tension point by point, to 7.5e6).
-ELASTIC_RATE, PARTLY_RATE, PLANE_RATE, AXIAL_RATE = 60e6, 9e6, 7.5e6, 4.2e6
-# Beside the elements: of each step, of each record with its ledger and guards, and of each run with
-# its frames and tables. Single elements and the wave in a bar take nothing else.
-STEP_SECONDS, RECORD_SECONDS, RUN_SECONDS = 4e-6, 4e-5, 0.1
+# it fails in tension point by point, to 9e6).
+ELASTIC_RATE, PARTLY_RATE, PLANE_RATE, AXIAL_RATE = 60e6, 9e6, 7.5e6, 4.8e6
+# Beside that: of each step, of each record with its ledger and guards, of each element in a frame,
+# and of each run with its tables. Single elements and the wave in a bar take nothing else.
+STEP_SECONDS, RECORD_SECONDS, FRAME_SECONDS, RUN_SECONDS = 6e-6, 4e-5, 4e-6, 0.025
 # Time step at factor 1 over the time of a pressure wave along the nominal edge length: of equal
 # right-angled triangles, and of the worst of an unstructured mesh.
 STRUCTURED_STEP, UNSTRUCTURED_STEP = 0.65, 0.45
@@ -97,7 +97,7 @@ def predicted(case: Case) -> Cost:
         step *= CUT_STEP
     steps = max(1.0, _duration(case) / step)
     rate = rate_of(not case.material.elastic, case.contact is not None, _is_axial(case.scene))
-    seconds = run_seconds(elements, steps, case.output.records, rate)
+    seconds = run_seconds(elements, steps, case.output.records, case.output.fields, rate)
     return Cost(elements, steps, seconds)
 
 
@@ -110,10 +110,10 @@ def rate_of(yields: bool, contact: bool, axisymmetric: bool) -> float:
     return AXIAL_RATE if axisymmetric else PLANE_RATE
 
 
-def run_seconds(elements: float, steps: float, records: int, rate: float) -> float:
+def run_seconds(elements: float, steps: float, records: int, frames: int, rate: float) -> float:
     """Time of a run on one core [s]; there are no more records than steps."""
     beside = steps * STEP_SECONDS + min(steps, records) * RECORD_SECONDS + RUN_SECONDS
-    return steps * elements / rate + beside
+    return elements * (steps / rate + frames * FRAME_SECONDS) + beside
 
 
 def _is_axial(scene: Scene) -> bool:

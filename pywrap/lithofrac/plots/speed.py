@@ -29,7 +29,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
         raise DataError(f"plot speed: expected {', '.join(INPUTS)}")
     rows = json.loads(by_name["benchmark.json"].read_text(encoding="utf-8"))["rows"]
     leave_out, growth = (pd.read_csv(by_name[name]) for name in INPUTS[1:])
-    drawn, axes = style.new_figure(2, 2, height=8.0)
+    drawn, axes = style.new_figure(2, 2, height=8.4)
     _draw_rows(axes[0, 0], pd.DataFrame(rows))
     _draw_leave_out(axes[0, 1], leave_out)
     _draw_growth(axes[1, 0], growth)
@@ -51,10 +51,10 @@ def _draw_rows(panel: Axes, rows: pd.DataFrame) -> None:
             label=f"{near:,} elements",
         )  # fmt: skip
     panel.set_xscale("log")
-    panel.set_yticks(range(len(names)), [name.replace("_", " ") for name in names], fontsize=7)
+    panel.set_yticks(range(len(names)), [name.replace("_", " ") for name in names], fontsize=6)
     panel.invert_yaxis()
-    panel.legend(loc="lower left", fontsize=7)
-    panel.set(xlabel="million element-steps per core-second", title="a  Speed of one thread")
+    panel.legend(loc="upper center", bbox_to_anchor=(0.4, -0.16), fontsize=7)
+    panel.set(xlabel="10⁶ element-steps per core-second", title="a  One thread")
 
 
 def _draw_leave_out(panel: Axes, table: pd.DataFrame) -> None:
@@ -62,10 +62,10 @@ def _draw_leave_out(panel: Axes, table: pd.DataFrame) -> None:
     places = np.arange(len(table))
     panel.barh(places, table["forced_over_needed"], color=style.SKY, height=0.7)
     panel.axvline(1.0, color=style.BLACK, lw=0.9)
-    panel.set_yticks(places, table["case"], fontsize=7)
+    panel.set_yticks(places, table["case"], fontsize=6)
     panel.invert_yaxis()
     panel.grid(axis="y", visible=False)
-    panel.set(xlabel="time, all forced on over needed [-]", title="b  What leaving out saves")
+    panel.set(xlabel="time, forced over needed [-]", title="b  Leaving out")
 
 
 def _draw_growth(panel: Axes, table: pd.DataFrame) -> None:
@@ -80,11 +80,11 @@ def _draw_growth(panel: Axes, table: pd.DataFrame) -> None:
             half = 0.5 * (own["exponent_high"].iloc[0] - own["exponent_low"].iloc[0])
             fitted += f" ± {half:.2f}"
         panel.loglog(x, y, marker=marker, ms=4, color=colour, label=f"{words}: {fitted}")
-    panel.legend(loc="upper left", fontsize=7)
+    panel.legend(loc="upper center", bbox_to_anchor=(0.4, -0.16), fontsize=7)
     panel.set(
         xlabel="over the first point [-]",
         ylabel="time over that of the first point [-]",
-        title="c  Growth of cost, with exponents",
+        title="c  Growth",
     )
 
 
@@ -103,5 +103,5 @@ def _draw_prediction(panel: Axes, table: pd.DataFrame) -> None:
     panel.set(
         xlabel="measured [core-seconds]",
         ylabel="predicted by check [core-seconds]",
-        title="d  Prediction (dashed: factor 2)",
+        title="d  Prediction",
     )
