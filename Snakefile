@@ -449,3 +449,4 @@ rule page:
 
 include: "pywrap/rules/regression.smk"
 include: "pywrap/rules/stability.smk"
+include: "pywrap/rules/accuracy.smk"

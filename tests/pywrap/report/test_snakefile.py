@@ -352,3 +352,10 @@ def test_stability_is_made_when_it_is_asked_for_and_only_then(tree):
     jobs = planned(tree, "stability")
     assert (jobs["make_stability"], jobs["plot_stability"], jobs["stability"]) == (1, 1, 1)
     assert not {"simulate", "page"} & set(jobs)
+
+
+def test_accuracy_is_made_when_it_is_asked_for_and_only_then(tree):
+    assert "make_accuracy" not in planned(tree)
+    jobs = planned(tree, "accuracy")
+    assert (jobs["make_accuracy"], jobs["plot_accuracy"], jobs["accuracy"]) == (1, 1, 1)
+    assert not {"simulate", "page"} & set(jobs)
