@@ -79,7 +79,7 @@ def timed_run(
     velocity: np.ndarray | None = None,
     look: Callable[[Run], None] | None = None,
 ) -> tuple[Run, float]:
-    """Run a problem to its end; short ones several times, as the clock counts in coarse steps.
+    """Run a problem to its end; short ones several times, for other work disturbs them most.
 
     Parameters
     ----------

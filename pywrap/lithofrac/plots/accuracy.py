@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from lithofrac.analysis.front import pareto_front
 from lithofrac.data import DataError
@@ -15,6 +17,7 @@ PANEL_HEIGHT = 1.75  # inches
 LEGEND_HEIGHT = 0.6  # inches
 FLOOR = 1e-4  # [%], smaller errors are drawn there
 TARGET = 1.0  # [%]
+MARGIN = 1.15  # about the values
 SIZE = (style.BLUE, "o", "element size, strain step")
 RATE = (style.ORANGE, "s", "loading rate")
 KNOBS = {
@@ -82,5 +85,15 @@ def draw_panel(panel: Axes, own: pd.DataFrame) -> None:
         cost[at], error[at], "*", ls="", ms=11.0, mfc="none", mec=style.BLACK, label="default"
     )
     panel.axhline(TARGET, color=style.BLACK, lw=0.7, ls=":")
-    panel.set_xscale("log")
-    panel.set_yscale("log")
+    for axis, values, limit in (
+        (panel.xaxis, cost, panel.set_xlim),
+        (panel.yaxis, np.append(error, TARGET), panel.set_ylim),
+    ):
+        limit(*limits(values))
+        axis.set_minor_formatter(NullFormatter())
+
+
+def limits(values: np.ndarray) -> tuple[float, float]:
+    """Whole decades that hold the values (n,), some room beside them."""
+    ends = np.log10([np.nanmin(values) / MARGIN, np.nanmax(values) * MARGIN])
+    return float(10.0 ** np.floor(ends[0])), float(10.0 ** np.ceil(ends[1]))

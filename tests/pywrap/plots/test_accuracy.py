@@ -48,6 +48,11 @@ def test_marks_tell_the_knobs_and_none_is_the_finest_solution(table, data_folder
     assert not any(9.0 in line.get_xdata() for line in lines.values())
 
 
+def test_axes_hold_whole_decades_with_some_room():
+    assert accuracy.limits([0.02, 0.5]) == pytest.approx((0.01, 1.0))
+    assert accuracy.limits([0.1, float("nan"), 0.95]) == pytest.approx((0.01, 10.0))
+
+
 def test_another_table_is_refused(table, data_folder):
     table.write_text("a,b\n1,2\n")
     with pytest.raises(DataError, match=r"expected one accuracy\.csv"):

@@ -212,4 +212,8 @@ CYLINDER = Subject(
         "damping_fraction": (0.0, 0.1, 0.9),
     },
     ("wall displacement",),
+    reasons={
+        "wall displacement": "The mesh sets the error. A shorter ramp lets the wall swing beyond "
+        "the answer and yield too far, which only happens to make up for that."
+    },
 )

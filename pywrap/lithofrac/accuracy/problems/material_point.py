@@ -48,4 +48,8 @@ MATERIAL_POINT = Subject(
     {"strain_step": tuple(END_STRAIN / n for n in (5, 10, 25, 50, 100, 1600))},
     ("axial stress",),
     size="strain_step",
+    reasons={
+        "axial stress": "A test takes a fraction of a second, and its steps are the points of the "
+        "curve that is drawn."
+    },
 )
