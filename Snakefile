@@ -450,3 +450,4 @@ rule page:
 include: "pywrap/rules/regression.smk"
 include: "pywrap/rules/stability.smk"
 include: "pywrap/rules/speed.smk"
+include: "pywrap/rules/accuracy.smk"

@@ -55,6 +55,7 @@ def parser() -> argparse.ArgumentParser:
         _compare,
         _references,
         _stability,
+        _accuracy,
     ):
         add(commands)
     return found
@@ -276,6 +277,23 @@ def _stability(commands) -> None:
     )
     one.add_argument(
         "--processes", type=_threads, default=os.cpu_count() or 1, metavar="N", help="default: all"
+    )
+
+
+def _accuracy(commands) -> None:
+    one = _command(
+        commands, "accuracy", "measure error against run time", "--only kirsch --out out/tables"
+    )
+    one.add_argument("--out", type=_path, required=True, metavar="DIR", help="folder of the tables")
+    one.add_argument(
+        "--only", nargs="+", default=[], metavar="PROBLEM", help="an unknown word lists all"
+    )
+    one.add_argument(
+        "--processes",
+        type=_threads,
+        default=1,
+        metavar="N",
+        help="default 1: runs side by side may slow each other down",
     )
 
 

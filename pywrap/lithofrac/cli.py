@@ -304,6 +304,16 @@ def stability(options: Namespace) -> int:
     return NUMERICAL_FAILURE if bad else GOOD
 
 
+def accuracy(options: Namespace) -> int:
+    """Measure error against run time; says which runs of the sweep failed."""
+    from lithofrac.accuracy.sweep import make_sweep
+
+    failed = make_sweep(options.out, options.only, options.processes)
+    for line in failed:
+        print(f"lithofrac: {line}", file=sys.stderr)
+    return NUMERICAL_FAILURE if failed else GOOD
+
+
 COMMANDS = {
     "init": init,
     "check": check,
@@ -319,6 +329,7 @@ COMMANDS = {
     "compare": compare,
     "references": references,
     "stability": stability,
+    "accuracy": accuracy,
 }
 
 

@@ -23,6 +23,7 @@ from lithofrac.analysis.variants import variants as variants_table
 from lithofrac.analysis.zigong_prediction import zigong_prediction, zigong_prediction_error
 from lithofrac.data import DataError
 from lithofrac.plots import (
+    accuracy,
     animation,
     curves,
     energy,
@@ -72,6 +73,7 @@ FIGURES: dict[str, Callable[[list[Path], Path], Figure]] = {
     "punch_patterns": punch_patterns.figure,
     "variants": variants.figure,
     "stability": stability.figure,
+    "accuracy": accuracy.figure,
     "study": study.figure,
     "speed": speed_figure.figure,
 }

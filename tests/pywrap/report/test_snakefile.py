@@ -361,3 +361,10 @@ def test_speed_is_measured_when_it_is_asked_for_and_one_job_at_a_time(tree):
     assert [jobs[name] for name in made] == [1] * 5
     rules = (tree / "pywrap" / "rules" / "speed.smk").read_text(encoding="utf-8")
     assert rules.count("    threads: 64") == 3
+
+
+def test_accuracy_is_made_when_it_is_asked_for_and_only_then(tree):
+    assert "make_accuracy" not in planned(tree)
+    jobs = planned(tree, "accuracy")
+    assert (jobs["make_accuracy"], jobs["plot_accuracy"], jobs["accuracy"]) == (1, 1, 1)
+    assert not {"simulate", "page"} & set(jobs)
