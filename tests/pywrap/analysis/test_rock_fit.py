@@ -8,10 +8,10 @@ from lithofrac.analysis.mohr_coulomb import peak_strength
 from lithofrac.analysis.rock_fit import fit_rock, unknowns
 from lithofrac.analysis.rock_start import elastic_constants, first_table, one_row, table_at
 from lithofrac.analysis.zigong_prediction import zigong_prediction, zigong_prediction_error
+from lithofrac.config import Material
 from lithofrac.config.material import COLUMNS
 from lithofrac.data.triaxial import Triaxial, load_triaxial
 
-ELASTIC = ("young_modulus_GPa", "poisson_ratio")
 NO_DILATION = np.zeros((2, 1))  # of no use where lateral strains were measured
 LAST = 0.01  # plastic strain at which the generated curves end
 no_core = pytest.mark.no_core
@@ -35,17 +35,21 @@ def one_row_of(rock, cohesion=10.0, friction=30.0):
     return rock.model_copy(update=one)
 
 
-@pytest.fixture(scope="module")
-def curves():
-    """Triaxial curves of the sandstone of Table 1, up to a plastic strain of `LAST`."""
+def curves_of(rock):
+    """Triaxial curves of a rock, up to a plastic strain of `LAST`."""
     found = []
     for p in (0.0, 20.0):
-        curve = point.drive("sandstone", confinement_MPa=p, end_strain=0.025, steps=150)
+        curve = point.drive(rock, confinement_MPa=p, end_strain=0.025, steps=150)
         curve = curve[curve["plastic_strain"] <= LAST + 1e-9].drop_duplicates("axial_strain")
         columns = (curve[key].to_numpy() for key in ("axial_strain", "axial_stress_MPa"))
         top, lateral = curve["axial_stress_MPa"].max(), curve["lateral_strain"].to_numpy()
         found.append(Triaxial(f"{p:g} MPa", p, top, *columns, lateral))
     return found
+
+
+@pytest.fixture(scope="module")
+def curves():
+    return curves_of("sandstone")
 
 
 def fitted_to(curves, base, start):
@@ -54,7 +58,7 @@ def fitted_to(curves, base, start):
     guess = {"young_modulus_GPa": 1e-3 * young, "poisson_ratio": poisson}
     rock = base.model_copy(update={**table, **guess})
     strongest = max(test.strength_MPa for test in curves)
-    return fit_rock(unknowns(rock, start, strongest, ELASTIC, True), curves, [])
+    return fit_rock(unknowns(rock, start, strongest, True), curves, [])
 
 
 @no_core
@@ -118,15 +122,19 @@ def test_the_bench_has_the_strengths_that_the_fit_says(sandstone, data_folder):
         assert curve["axial_stress_MPa"].max() == pytest.approx(row.computed_MPa, rel=1e-6)
 
 
-def test_table_1_comes_back_at_its_own_rows(curves, sandstone):
-    rows = np.array([e for e in sandstone.plastic_strain if e <= LAST])
+@pytest.mark.parametrize("name", ["sandstone", "quartzite", "tyndall_limestone"])
+def test_table_1_comes_back_at_its_own_rows(name):
+    rock = Material.load(name)
+    curves = curves_of(rock)
+    rows = np.array([e for e in rock.plastic_strain if e <= LAST])
     start = table_at(rows, curves, *elastic_constants(curves), NO_DILATION)
-    fit = fitted_to(curves, sandstone, start)
-    assert fit.rock.young_modulus_GPa == pytest.approx(28.0, rel=1e-3)
-    assert fit.rock.poisson_ratio == pytest.approx(0.25, abs=1e-3)
+    fit = fitted_to(curves, rock, start)
+    assert fit.converged
+    assert fit.rock.young_modulus_GPa == pytest.approx(rock.young_modulus_GPa, rel=1e-3)
+    assert fit.rock.poisson_ratio == pytest.approx(rock.poisson_ratio, abs=1e-3)
     within = {"cohesion_MPa": 0.1, "friction_angle_deg": 0.1, "dilation_angle_deg": 1.0}
     for key, close in within.items():
-        known = getattr(sandstone, key)[: len(rows)]
+        known = getattr(rock, key)[: len(rows)]
         np.testing.assert_allclose(getattr(fit.rock, key), known, atol=close, err_msg=key)
     assert fit.error_percent("fitted")[1] < 0.1
 
