@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import shutil
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -33,7 +34,8 @@ def warn(name: str, case: Case, quiet: bool = False) -> list[str]:
 
     found = doubts(case)
     for sentence in [] if quiet else found:
-        print(f"lithofrac: warning: {name}: {sentence}", file=sys.stderr)
+        with suppress(OSError):  # a full disk below the log is no reason to stop
+            print(f"lithofrac: warning: {name}: {sentence}", file=sys.stderr)
     return found
 
 

@@ -37,10 +37,11 @@ class Progress:
     def warn(self, said: str) -> None:
         """Put a sentence on a line of its own."""
         text = f"{self.name}: warning: {said}"
-        if self.bar is None:
-            print(text, file=self.stream, flush=True)
-        else:
-            self.bar.write(text, file=self.stream)
+        with suppress(OSError):  # as above; the summary has it too
+            if self.bar is None:
+                print(text, file=self.stream, flush=True)
+            else:
+                self.bar.write(text, file=self.stream)
 
     def close(self) -> None:
         """Leave the bar as it is and go to a new line."""

@@ -109,6 +109,7 @@ def test_quartzite_at_the_pressure_of_the_punch_peaks_between_knots():
     assert top["plastic_strain"] == pytest.approx(0.00194, abs=2e-5)
 
 
+@pytest.mark.one_build  # long bench runs for their digits alone
 @pytest.mark.parametrize("name", ROCKS)
 def test_strain_at_the_peak_has_the_printed_digits(name):
     """Backward Euler is of first order here: two step sizes give the limit."""

@@ -13,6 +13,7 @@ from lithofrac.analysis.scalars import ENERGY, TABLES, table_rows
 from lithofrac.config.errors import suggestion
 from lithofrac.config.study import Study, load_study
 from lithofrac.data import DataError
+from lithofrac.results.columns import ENERGY_COLUMNS
 
 HEAD = ("case", "realisation")  # columns in front
 # Numbers of summary.json.
@@ -44,23 +45,6 @@ SUMMARY = (
     "contact_sweeps_mean",
     "contact_unconverged_steps",
 )
-# Entries of the energy ledger at the end of a run.
-LEDGER = (
-    "time_s",
-    "kinetic_J",
-    "elastic_J",
-    "compressive_dissipation_J",
-    "fracture_dissipation_J",
-    "external_J",
-    "damping_J",
-    "contact_J",
-    "friction_J",
-    "insertion_J",
-    "relump_J",
-    "reset_J",
-    "residual_J",
-    "residual_relative",
-)
 OF_A_TABLE = re.compile(r"(?P<table>\w+)\.(?P<column>\w+)(?P<keys>\[[^\]]*\])?\Z")
 
 
@@ -72,7 +56,7 @@ def check_quantities(study: Study, file: Path) -> None:
     DataError
         With one sentence per quantity, one per line.
     """
-    known = [*SUMMARY, *(f"{ENERGY}{name}" for name in LEDGER)]
+    known = [*SUMMARY, *(f"{ENERGY}{name}" for name in ENERGY_COLUMNS)]
     known += [f"{name}.{column}" for name, table in TABLES.items() for column in table.columns]
     wrong = []
     for i, quantity in enumerate(study.quantities):

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from lithofrac.core import Energy, Run
+from lithofrac.results.columns import ENERGY_COLUMNS
 from lithofrac.results.cracks import FRAGMENT_COLUMNS, fragments
 
 ENERGY = (
@@ -22,23 +23,6 @@ ENERGY = (
     "reset",
     "turning",
 )
-ENERGY_COLUMNS = [
-    "time_s",
-    "kinetic_J",
-    "elastic_J",
-    "compressive_dissipation_J",
-    "fracture_dissipation_J",
-    "external_J",
-    "damping_J",
-    "contact_J",
-    "friction_J",
-    "insertion_J",
-    "relump_J",
-    "reset_J",
-    "turning_J",
-    "residual_J",
-    "residual_relative",
-]
 PROBE_COLUMNS = [
     *(f"stress_{c}_MPa" for c in ("xx", "yy", "zz", "xy")),
     *(f"strain_{c}" for c in ("xx", "yy", "zz", "xy")),

@@ -122,6 +122,7 @@ def test_the_bench_has_the_strengths_that_the_fit_says(sandstone, data_folder):
         assert curve["axial_stress_MPa"].max() == pytest.approx(row.computed_MPa, rel=1e-6)
 
 
+@pytest.mark.one_build  # half a minute of the bench, which its own tests drive on every build
 @pytest.mark.parametrize("name", ["sandstone", "quartzite", "tyndall_limestone"])
 def test_table_1_comes_back_at_its_own_rows(name):
     rock = Material.load(name)

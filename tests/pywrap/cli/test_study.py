@@ -15,8 +15,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from lithofrac.analysis.study import LEDGER, SUMMARY
+from lithofrac.analysis.study import SUMMARY
 from lithofrac.cli import main
+from lithofrac.results.columns import ENERGY_COLUMNS
 
 pytestmark = pytest.mark.no_core  # it runs cases, but what is tested is not the build of the core
 
@@ -79,7 +80,7 @@ def test_quantities_that_are_known_are_those_of_a_run(project):
         if value is None or (isinstance(value, int | float) and not isinstance(value, bool))
     }
     assert set(SUMMARY) == numbers - {"commit"}
-    assert set(LEDGER) == set(summary["energy"])
+    assert set(ENERGY_COLUMNS) == set(summary["energy"])
 
 
 def test_only_what_changed_is_run(project):
