@@ -26,7 +26,7 @@ from lithofrac.errors import CoreError
 
 MPA = 1e6
 POINTS = 50  # of a curve, at most
-SUBSTEPS = 4  # of the bench from point to point: with one the rock itself is off by up to 2 %
+SUBSTEPS = 4  # of the bench from point to point, backward Euler: see `rock.md` for what is left
 STRENGTH = 10  # points of a curve that the strength of a test counts for
 CONFIDENCE = 0.95
 BAND = 1e-3  # crack band width of the bench [m], if its limit allows
@@ -162,10 +162,18 @@ def fit_rock(wanted: Unknowns, fitted: list[Triaxial], predicted: list[Triaxial]
 
 
 def sampled(test: Triaxial) -> np.ndarray:
-    """Rows of a curve that are compared, strains above 0 and at most `POINTS` of them."""
+    """Rows of a curve that are compared, strains above 0 and at most `POINTS` of them.
+
+    They stand at equal distances along the curve in units of its own ranges, since the rows of a
+    table near 0 are passed in a small part of the strain.
+    """
     rows = np.flatnonzero(test.axial_strain > 0.0)
-    chosen = np.linspace(0, len(rows) - 1, min(POINTS, len(rows))).round()
-    return rows[chosen.astype(int)]
+    columns = [test.axial_strain, test.axial_stress_MPa]
+    columns += [] if test.lateral_strain is None else [test.lateral_strain]
+    steps = [np.diff(column[rows]) / (np.ptp(column[rows]) or 1.0) for column in columns]
+    along = np.append(0.0, np.cumsum(np.linalg.norm(steps, axis=0)))
+    wanted = np.linspace(0.0, along[-1], min(POINTS, len(rows)))
+    return rows[np.unique(np.abs(along - wanted[:, None]).argmin(axis=1))]
 
 
 def driven(rock: Material, test: Triaxial) -> pd.DataFrame:
