@@ -26,9 +26,7 @@ from lithofrac.errors import CoreError
 
 MPA = 1e6
 POINTS = 50  # of a curve, at most
-SUBSTEPS = (
-    4  # of the bench from point to point: quartzite off by 0.13 % of its strength, with one by 0.7
-)
+SUBSTEPS = 4  # of the bench from point to point: quartzite 0.13 % off, with one 0.7 %
 STRENGTH = 10  # points of a curve that the strength of a test counts for
 CONFIDENCE = 0.95
 BAND = 1e-3  # crack band width of the bench [m], if its limit allows
