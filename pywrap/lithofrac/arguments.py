@@ -142,14 +142,33 @@ def _study(commands) -> None:
     one.add_argument("--quiet", action="store_true", help="print errors only")
 
 
+KINDS = """figures (.svg .png .pdf)
+  any run      curves pattern energy mesh gauges fractures events
+  several      fracture_series fracture_evolution gallery study
+  material     single_element measured
+  sandstone    stress_strain strength stiffness_sweep
+  punch, hole  punch punch_patterns hole_gauges hole_patterns size_effect
+  suite        variants stability
+tables (.csv .parquet)
+  runs         strength cracks bands punch results claims errors run_time study
+               variants hole_initiation hole_fits hole_checks size_effect kirsch
+  rocks        single_element options tautona zigong zigong_fit
+               zigong_prediction zigong_prediction_error
+animation (.gif)
+  any run      animation
+"""
+
+
 def _plot(commands) -> None:
     one = _command(
         commands,
         "plot",
         "draw a figure of results",
-        "strength out/sandstone_triaxial_p* --out out/strength.svg",
+        "fractures out/p10 --out out/fractures.png",
     )
-    one.add_argument("kind", metavar="KIND", help="what to draw; an unknown word lists all")
+    one.formatter_class = argparse.RawDescriptionHelpFormatter
+    one.epilog = f"{KINDS}\n{one.epilog}"
+    one.add_argument("kind", metavar="KIND", help="what to draw, see below")
     one.add_argument("input", nargs="*", type=Path, metavar="INPUT", help="results folder or file")
     one.add_argument(
         "--out", type=_path, required=True, metavar="FILE", help=".svg .png .pdf .csv .parquet .gif"
@@ -202,15 +221,18 @@ def _point(commands) -> None:
     )
 
 
-FIT_FORMS = """tests as CSV, compression positive, one of two forms (files of both may be named):
-  strengths  confinement_MPa,strength_MPa   one row a test; sigma_1, not sigma_1 - sigma_3
-             (strength_min_MPa, strength_max_MPa and tests may stand beside them, unused)
-  curves     confinement_MPa,axial_strain,axial_stress_MPa   one row a point, in order of loading
-             also lateral_strain (extension positive) or volumetric_strain (dilation positive),
+FIT_FORMS = """tests as CSV, compression positive, in one of two forms (or files of both):
+  strengths  confinement_MPa,strength_MPa
+             one row a test; sigma_1, not sigma_1 - sigma_3 (strength_min_MPa,
+             strength_max_MPa and tests may stand beside them, unused)
+  curves     confinement_MPa,axial_strain,axial_stress_MPa
+             one row a point, in order of loading; also lateral_strain
+             (extension positive) or volumetric_strain (dilation positive),
              and test, a name, where two tests share a confinement
-strains are fractions counted from the isotropic state. Curves give E, with lateral strains also
-Poisson's ratio and dilation; everything else comes from --base, from TESTS.yaml beside TESTS.csv,
-or from --set. rock.svg, rock_parameters.csv and rock_residuals.csv are written beside rock.yaml.
+Strains are fractions counted from the isotropic state. Curves give E, with
+lateral strains also Poisson's ratio and dilation; everything else comes from
+--base, from TESTS.yaml beside TESTS.csv, or from --set. rock.svg,
+rock_parameters.csv and rock_residuals.csv are written beside rock.yaml.
 """
 
 
@@ -219,8 +241,8 @@ def _fit(commands) -> None:
         commands,
         "fit",
         "fit a rock to triaxial tests",
-        "data/zigong/triaxial_strength.csv --base sandstone --set dilation_angle_deg=10\n"
-        "         --fit-on 10 30 50 70 --out out/zigong.yaml",
+        "data/zigong/triaxial_strength.csv --base sandstone\n"
+        "         --set dilation_angle_deg=10 --fit-on 10 30 50 70 --out out/zigong.yaml",
     )
     one.formatter_class = argparse.RawDescriptionHelpFormatter
     one.epilog = f"{FIT_FORMS}\n{one.epilog}"

@@ -265,6 +265,8 @@ def fit(options: Namespace) -> int:
     from lithofrac.own_rock import fit as fit_to
 
     o = options
+    if sys.stderr.isatty():
+        print("fitting; stress-strain curves may take some minutes", file=sys.stderr)
     print("\n".join(fit_to(o.tests, o.out, o.base, o.set, o.fit_on, o.knots)))
     return GOOD
 

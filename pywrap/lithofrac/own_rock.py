@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lithofrac.analysis.rock_fit import RockFit, fit_rock, unknowns
+from lithofrac.analysis.rock_fit import MOST_TRIALS, RockFit, Unknowns, fit_rock, unknowns
 from lithofrac.analysis.rock_start import Start, elastic_constants, first_table, one_row, table_at
 from lithofrac.config import ConfigError
 from lithofrac.config.errors import suggestion
@@ -61,15 +61,16 @@ def fit(
     fitted, predicted = _split(measured, fit_on)
     source, values = _base(tests[0], base, settings(given))
     curves = [test for test in fitted if test.has_curve]
-    start, values, free = _start(curves, values, knots, source)
-    wanted = _unknowns(fitted, start, values, free, source)
+    start, values, given_by_curves = _start(curves, values, knots, source)
+    wanted = _unknowns(fitted, start, values, DILATION in given_by_curves, source)
     try:
         found = fit_rock(wanted, fitted, predicted)
     except ValueError as error:
         raise ConfigError(f"{tests[0]}: {error}") from None
-    text = _material_text(found, [str(path) for path in tests], source, bool(curves))
+    read_off = [key for key in given_by_curves if key in ELASTIC]
+    text = _material_text(found, [str(path) for path in tests], source, read_off)
     written = _write(out, text, found)
-    return [*_account(found, bool(curves)), f"written: {', '.join(map(str, written))}"]
+    return [*_account(found, read_off), f"written: {', '.join(map(str, written))}"]
 
 
 def _split(tests: list[Triaxial], fit_on: list[float] | None) -> tuple[list, list]:
@@ -113,17 +114,17 @@ def _base(first: Path, base: str | None, given: dict) -> tuple[str, dict]:
 
 def _start(
     curves: list[Triaxial], values: dict, knots: list[float] | None, source: str
-) -> tuple[Start | None, dict, list[str]]:
-    """First table and elastic constants from the curves, and the keys to fit beside cohesion and
-    friction."""
+) -> tuple[Start | None, dict, tuple[str, ...]]:
+    """First table and elastic constants from the curves, and the keys beside cohesion and friction
+    that curves give."""
     if not curves:
         if knots:
             raise ConfigError("--knots: strengths alone give one row, expected curves for more")
         _refuse_missing(values, (*NEEDED, DILATION), source)
-        return None, values, []
+        return None, values, ()
     lateral = any(test.lateral_strain is not None for test in curves)
-    free = [ELASTIC[0], *([ELASTIC[1], DILATION] if lateral else [])]
-    _refuse_missing(values, tuple(key for key in (*NEEDED, DILATION) if key not in free), source)
+    given = (ELASTIC[0], ELASTIC[1], DILATION) if lateral else ELASTIC[:1]
+    _refuse_missing(values, tuple(k for k in (*NEEDED, DILATION) if k not in given), source)
     young, poisson = elastic_constants(curves)
     if not young > 0.0:
         raise ConfigError(f"{curves[0].name}: the stress falls from the start, expected a rise")
@@ -138,11 +139,11 @@ def _start(
     here = "the tests to fit"
     try:
         if not knots:
-            return first_table(*about, MOST_ROWS), values, free
+            return first_table(*about, MOST_ROWS), values, given
         here = f"--knots {' '.join(f'{knot:g}' for knot in knots)}"
         if not (knots[0] >= 0.0 and all(b > a for a, b in pairwise(knots))):
             raise ValueError("expected numbers not below 0, each above the one before")
-        return table_at(np.array(knots), *about), values, free
+        return table_at(np.array(knots), *about), values, given
     except ValueError as error:
         raise ConfigError(f"{here}: {error}") from None
 
@@ -157,13 +158,15 @@ def _refuse_missing(values: dict, needed: tuple, source: str) -> None:
         )
 
 
-def _unknowns(fitted: list[Triaxial], start: Start | None, values: dict, free: list, source: str):
+def _unknowns(
+    fitted: list[Triaxial], start: Start | None, values: dict, dilates: bool, source: str
+) -> Unknowns:
     """What is to be fitted, from a base that has passed the checks of a material."""
     strongest = max(test.strength_MPa for test in fitted)
     if start is None:
         start = one_row(fitted)
     rows = len(start.plastic_strain)
-    if DILATION not in free:
+    if not dilates:
         dilation = _given_dilation(values, start.plastic_strain, source)
         start = Start(start.plastic_strain, start.cohesion, start.friction, dilation)
     table = {
@@ -174,8 +177,7 @@ def _unknowns(fitted: list[Triaxial], start: Start | None, values: dict, free: l
     }
     kept = {key: values[key] for key in KEPT if key in values}
     rock = Material.from_values({**kept, **table}, source)
-    elastic = tuple(key for key in ELASTIC if key in free)
-    return unknowns(rock, start, strongest, elastic, DILATION in free)
+    return unknowns(rock, start, strongest, dilates)
 
 
 def _given_dilation(values: dict, strain: np.ndarray, source: str) -> np.ndarray:
@@ -209,13 +211,13 @@ def _digits(value: float) -> float:
     return float(f"{value:.{SIGNIFICANT}g}")
 
 
-def _material_text(fit: RockFit, tests: list[str], source: str, curves: bool) -> str:
+def _material_text(fit: RockFit, tests: list[str], source: str, read_off: list[str]) -> str:
     """The material file: where each number comes from, and the numbers."""
     rock = fit.rock
     fitted = fit.strengths[fit.strengths["role"] == "fitted"]["confinement_MPa"]
     levels = ", ".join(f"{level:g}" for level in sorted(set(fitted)))
     free = list(dict.fromkeys(fit.parameters["quantity"]))
-    rest = [key for key in (*NEEDED, DILATION) if key not in free]
+    rest = [key for key in (*NEEDED, DILATION) if key not in (*free, *read_off)]
     values = {"title": f"Rock fitted to {', '.join(tests)} at {levels} MPa"}
     values |= rock.model_dump(exclude_defaults=True, exclude={"title", *COLUMNS})
     values |= {key: _digits(values[key]) for key in ELASTIC}
@@ -224,7 +226,9 @@ def _material_text(fit: RockFit, tests: list[str], source: str, curves: bool) ->
         f"Fitted by lithofrac: {', '.join(free)}.",
         f"Not given by the tests, from {source}: {', '.join(rest)}.",
     ]
-    if not curves:
+    if read_off:
+        head.insert(1, f"Read off the first parts of the curves: {', '.join(read_off)}.")
+    else:
         head.append("Strengths alone: one row, no hardening, softening or change of dilation.")
     table = "".join(f"{key}: [{column}]\n" for key, column in columns.items())
     return "".join(f"# {line}\n" for line in head) + text_of(values) + table
@@ -254,13 +258,26 @@ def _write(out: Path, text: str, fit: RockFit) -> list[Path]:
     return [out, *beside.values()]
 
 
-def _account(fit: RockFit, curves: bool) -> list[str]:
+def _account(fit: RockFit, read_off: list[str]) -> list[str]:
     """The fit in words and two tables."""
-    rows = len(fit.rock.plastic_strain)
-    what = f"a table of {rows} rows from curves"
-    if not curves:
-        what = "a table of one row: strengths alone say nothing of hardening, softening or dilation"
-    lines = [what, f"{'quantity':<21}{'plastic strain':>15}{'value':>11}{'95 %':>11}  bounds"]
+    rock, rows = fit.rock, len(fit.rock.plastic_strain)
+    what = [f"a table of {rows} rows from curves"]
+    if not read_off:
+        what = [
+            "a table of one row: strengths alone say nothing of hardening, softening or dilation"
+        ]
+    what += [f"{key} {getattr(rock, key):.4g}, from the first parts of the curves"
+             for key in read_off]  # fmt: skip
+    if not fit.converged:
+        what.append(f"not converged in {MOST_TRIALS} steps: fewer --knots may help")
+    pairs = zip(rock.plastic_strain, rock.friction_angle_deg, rock.dilation_angle_deg, strict=True)
+    for strain, friction, dilation in pairs:
+        if dilation > friction:
+            what.append(
+                f"at a plastic strain of {strain:.4g} it dilates by {dilation:.3g} degrees, more "
+                f"than the friction angle of {friction:.3g}"
+            )
+    lines = [*what, f"{'quantity':<21}{'plastic strain':>15}{'value':>11}{'95 %':>11}  bounds"]
     for row in fit.parameters.itertuples():
         strain = "" if np.isnan(row.plastic_strain) else f"{row.plastic_strain:.5g}"
         half = "-" if np.isnan(row.plus_minus) else f"± {row.plus_minus:.2g}"

@@ -58,7 +58,7 @@ class Progress:
                 file=self.stream, dynamic_ncols=True,
             )  # fmt: skip
         self.bar.set_postfix_str(
-            f"{report['rate'] / 1e6:.0f}M el/s, {report['cracks']} cracks, "
+            f"{report['rate'] / 1e6:.0f}M el/s, {report['cracks']} crack events, "
             f"residual {report['residual']:.0e}",
             refresh=False,
         )
@@ -70,6 +70,6 @@ def line(report: dict) -> str:
     return (
         f"step {report['step']} of {report['steps']} ({report['percent']:.0f} %), "
         f"{1e3 * report['time_s']:.4f} ms, {report['rate'] / 1e6:.1f}M element-steps/s, "
-        f"{report['cracks']} cracks, energy residual {report['residual']:.1e}, "
+        f"{report['cracks']} crack events, energy residual {report['residual']:.1e}, "
         f"{report['seconds_left']:.0f} s left"
     )

@@ -1,7 +1,8 @@
 """Every command and every file of the documentation, run as its reader would.
 
 A page is one session: its fenced blocks are taken in order, in a temporary folder that has the
-configs and the data of the checkout. Words behind the language of a block say more:
+configs and the data of the checkout; that of a project, in the folder of the project. Words behind
+the language of a block say more:
 
 exists : commands are not run; program, command and options must exist
 slow : so in the quick run (Python is compiled); run with the tests marked slow
@@ -37,6 +38,7 @@ pytestmark = pytest.mark.no_core  # it runs cases, but what is tested is not the
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
 PAGES += sorted((ROOT / "reports" / "guide").glob("*.md"))
+PAGES += sorted(page for top in ("configs", "data") for page in (ROOT / top).rglob("*.md"))
 RULES = [ROOT / "Snakefile", *(ROOT / "pywrap" / "rules").glob("*.smk")]
 FLAGS, OPTIONS = {"exists", "slow"}, {"add", "file"}
 ASSIGNMENT = re.compile(r"[A-Z_]+=.*\Z")
@@ -231,7 +233,7 @@ def expanded(word):
 
 @pytest.fixture
 def reader(tmp_path, monkeypatch):
-    """reader(slow) -> a session in a folder like the checkout."""
+    """reader(page, slow) -> a session in a folder like the checkout or a project."""
     for name in ("configs", "data"):
         shutil.copytree(ROOT / name, tmp_path / name)
     programs = tmp_path / ".bin"
@@ -240,8 +242,14 @@ def reader(tmp_path, monkeypatch):
     program.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -m lithofrac "$@"\n')
     program.chmod(0o755)
     monkeypatch.setenv("PATH", f"{programs}{os.pathsep}{os.environ['PATH']}")
-    monkeypatch.chdir(tmp_path)
-    return lambda slow: Session(tmp_path, monkeypatch, slow)
+
+    def start(page, slow):
+        project = page.parent if (page.parent / "case.yaml").is_file() else ROOT
+        folder = tmp_path / project.relative_to(ROOT)
+        monkeypatch.chdir(folder)
+        return Session(folder, monkeypatch, slow)
+
+    return start
 
 
 def name_of(page):
@@ -250,7 +258,7 @@ def name_of(page):
 
 @pytest.mark.parametrize("page", [page for page in PAGES if any(blocks(page))], ids=name_of)
 def test_a_page_does_what_it_says(page, reader):
-    session = reader(slow=False)
+    session = reader(page, slow=False)
     for block in blocks(page):
         session.take(block)
 
@@ -262,7 +270,7 @@ def test_a_page_does_what_it_says(page, reader):
     ids=name_of,
 )
 def test_the_long_commands_of_a_page_run(page, reader):
-    session = reader(slow=True)
+    session = reader(page, slow=True)
     for block in blocks(page):
         session.take(block)
 
@@ -312,8 +320,8 @@ def test_every_folder_of_the_code_is_on_the_map():
 
 
 def test_the_reader_refuses_what_nothing_runs(reader):
-    session = reader(slow=False)
     page = PAGES[0]
+    session = reader(page, slow=False)
     for block in (
         Block(page, 1, "yaml", "a: 1"),
         Block(page, 1, "sh", "rm -r out"),

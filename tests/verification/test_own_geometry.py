@@ -3,53 +3,19 @@
 import numpy as np
 import pandas as pd
 import pytest
+from own_geometry import APART, CAP, GROUPS, KIRSCH_LOADING, SQUARE, beside, hole_as_geo, sized
 
 from lithofrac.cli import main
 from lithofrac.config import find_case, load_case
 from lithofrac.core import Run
 from lithofrac.problem import Mesh
 from lithofrac.run import simulate
-from lithofrac.scenes import _gmsh, hole_quarter, make_mesh, make_problem
+from lithofrac.scenes import make_mesh, make_problem
 
 pytestmark = pytest.mark.verification
 
-BLOCKS = """\
-Point(1) = {0, 0, 0, 2.5};
-Point(2) = {10, 0, 0, 2.5};
-Point(3) = {10, 20, 0, 2.5};
-Point(4) = {0, 20, 0, 2.5};
-Line(1) = {1, 2};
-Line(2) = {2, 3};
-Line(3) = {3, 4};
-Line(4) = {4, 1};
-Curve Loop(1) = {1, 2, 3, 4};
-Plane Surface(1) = {1};
-Point(5) = {10, 25, 0, 2.5};
-Point(6) = {0, 25, 0, 2.5};
-Physical Surface("rock") = {1};
-Physical Curve("bottom") = {1};
-Physical Curve("left") = {4};
-"""
-BONDED = """\
-Line(5) = {3, 5};
-Line(6) = {5, 6};
-Line(7) = {6, 4};
-Curve Loop(2) = {-3, 5, 6, 7};
-"""
-APART = """\
-Point(13) = {10, 20, 0, 2.5};
-Point(14) = {0, 20, 0, 2.5};
-Line(13) = {13, 14};
-Line(5) = {13, 5};
-Line(6) = {5, 6};
-Line(7) = {6, 14};
-Curve Loop(2) = {-13, 5, 6, 7};
-"""
-CAP = """\
-Plane Surface(2) = {2};
-Physical Surface("cap") = {2};
-Physical Curve("back") = {6};
-"""
+BLOCK = sized(SQUARE + GROUPS + 'Physical Curve("left") = {4};\n', 2.5)
+BONDED, LOOSE = sized(CAP, 2.5), sized(APART, 2.5)
 CASE = """\
 title: Two blocks
 material: {extends: sandstone, elastic: true}
@@ -69,17 +35,12 @@ output: {records: 50, fields: 0}
 def case_file(tmp_path):
     """case_file(geo, case): path of a case beside its geometry."""
 
-    def made(geo, case=CASE):
-        (tmp_path / "own.geo").write_text(geo)
-        (tmp_path / "own.yaml").write_text(case)
-        return tmp_path / "own.yaml"
-
-    return made
+    return lambda geo, case=CASE: beside(tmp_path, geo, case)
 
 
-@pytest.mark.parametrize("between", [BONDED, APART], ids=["bonded", "contact"])
+@pytest.mark.parametrize("between", [BONDED, LOOSE], ids=["bonded", "contact"])
 def test_two_bodies_carry_one_stress(case_file, tmp_path, between):
-    case = load_case(case_file(BLOCKS + between + CAP))
+    case = load_case(case_file(BLOCK + between))
     problem = make_problem(case, make_mesh(case))
     simulate(problem, tmp_path / "out")
     force = pd.read_parquet(tmp_path / "out" / "history.parquet")["bottom_y_force_N"]
@@ -92,24 +53,11 @@ def test_two_bodies_carry_one_stress(case_file, tmp_path, between):
 
 
 def test_a_built_in_scene_written_as_a_geo_runs_to_the_same_bits(case_file, monkeypatch):
-    written = []
-    monkeypatch.setattr(
-        hole_quarter, "mesh_from", lambda geo: written.append(geo) or _gmsh.mesh_from(geo)
-    )
     built_in = find_case("kirsch", None, {"scene.wall_elements_per_radius": 4})
-    mesh = make_mesh(built_in)
-    head = "".join(line for line in _gmsh.HEAD.splitlines(True) if "General" not in line)
-    loading = """\
-loading:
-  kind: boundaries
-  held: {bottom: y, left: x}
-  pressed_MPa: {top: 1.0}
-  ramp_transits: 40  # of half the height of the block
-  hold_transits: 80
-"""
+    mesh, geo = hole_as_geo(built_in, monkeypatch)
     text = CASE.split("contact")[0].replace("  materials: {cap: {extends: sandstone, elastic", "#")
     text = text.replace("sandstone", "tyndall_limestone").replace("unit: mm", "unit: m")
-    own = load_case(case_file(head + written[0], text + loading))
+    own = load_case(case_file(geo, text + KIRSCH_LOADING))
     states = []
     for case, its_mesh in ((built_in, mesh), (own, make_mesh(own))):
         run = Run(make_problem(case, its_mesh))
@@ -122,7 +70,7 @@ loading:
 def test_a_driven_curve_gives_force_and_way(case_file, tmp_path):
     driven = "driven: {back: {y_mm: -0.01}}, speed_m_s: 0.1, axial: back, ramp_transits: 5"
     text = CASE.replace("pressed_MPa: {back: 5}, hold_transits: 60", driven)
-    case = load_case(case_file(BLOCKS + BONDED + CAP, text))
+    case = load_case(case_file(BLOCK + BONDED, text))
     problem = make_problem(case, make_mesh(case))
     simulate(problem, tmp_path / "out")
     last = pd.read_parquet(tmp_path / "out" / "history.parquet").iloc[-1]
@@ -135,11 +83,11 @@ def test_a_driven_curve_gives_force_and_way(case_file, tmp_path):
 
 
 def test_a_results_folder_holds_its_geometry_and_runs_again(case_file, tmp_path, capsys):
-    path = case_file(BLOCKS + APART + CAP, CASE.replace("hold_transits: 60", "hold_transits: 1"))
+    path = case_file(BLOCK + LOOSE, CASE.replace("hold_transits: 60", "hold_transits: 1"))
     first, again = tmp_path / "first", tmp_path / "again"
     assert main(["run", str(path), "--out", str(first), "--quiet"]) == 0
     path.with_name("own.geo").unlink()
-    assert (first / "geometry.geo").read_text() == BLOCKS + APART + CAP
+    assert (first / "geometry.geo").read_text() == BLOCK + LOOSE
     assert main(["run", str(first / "case.yaml"), "--out", str(again), "--quiet"]) == 0
     a, b = (Mesh.load(folder / "mesh.npz") for folder in (first, again))
     assert np.array_equal(a.nodes, b.nodes)
@@ -154,7 +102,7 @@ def test_a_results_folder_holds_its_geometry_and_runs_again(case_file, tmp_path,
 
 
 def test_what_a_file_lacks_is_said_with_the_name_of_the_case(case_file, tmp_path, capsys):
-    path = case_file((BLOCKS + APART + CAP).replace('Curve("back")', 'Curve("beck")'))
+    path = case_file((BLOCK + LOOSE).replace('Curve("back")', 'Curve("beck")'))
     assert main(["run", str(path), "--out", str(tmp_path / "out")]) == 2
     assert capsys.readouterr().err == (
         f"lithofrac: {path}: loading.pressed_MPa.back: no such physical curve, did you mean "

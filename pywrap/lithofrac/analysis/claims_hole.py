@@ -191,7 +191,7 @@ def _breakout(source: Source) -> dict[str, Value]:
     table = pd.concat(_cracked(source, MAIN, "sidewall").values())
     compressive = table.loc[table["mode"] != "tensile", "length_mm"].sum()
     share = float(compressive / table["length_mm"].sum())
-    return {"compressive_share": Value(100.0 * share, f"{len(table)} cracks")}
+    return {"compressive_share": Value(100.0 * share, f"{len(table)} crack edges")}
 
 
 def _agreement(source: Source) -> dict[str, Value]:

@@ -131,7 +131,7 @@ def _echelon(source: Source) -> dict[str, Value]:
     if not inside.any():
         raise CannotCheckError(f"{run.name} has no cracks in the cone")
     share, median = near_axis_share(table[inside]), np.median(crack_angles(table[inside]))
-    return {"near_axis": Value(100.0 * share, f"{inside.sum()} cracks, median {median:.0f}°")}
+    return {"near_axis": Value(100.0 * share, f"{inside.sum()} crack edges, median {median:.0f}°")}
 
 
 def _cone_length(source: Source) -> dict[str, Value]:

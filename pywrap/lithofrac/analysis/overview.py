@@ -62,12 +62,12 @@ ALWAYS: list[Row] = [
     ("damping [% of work]", _share("damping_J")),
     ("kinetic [% of work]", _share("kinetic_J")),
     ("energy residual [-]", _plain("energy_residual")),
-    ("cracks", _plain("cracks")),
+    ("crack events (failed nodes)", _plain("cracks")),
 ]
 WHERE_USED: list[Row] = [  # left out where no run has any
     ("crack length [mm]", _plain("crack_length_mm")),
     ("fragments", _plain("fragments")),
-    ("cracks on a second choice", _plain("crack_fallbacks")),
+    ("edges taken instead of cuts", _plain("crack_fallbacks")),
     ("resets of one element, most", _plain("most_resets_of_an_element")),
     ("contact pairs, most", _plain("contact_pairs_max")),
     ("sweeps a contact step, mean", _plain("contact_sweeps_mean")),
@@ -96,6 +96,11 @@ def overview(paths: list[Path]) -> str:
 
 def _summary(folder: Path) -> dict:
     path = folder / "summary.json"
+    if not path.is_file() and (folder / "study.yaml").is_file():
+        raise DataError(
+            f"{folder}: is the folder of a study, expected its runs, as {folder}/runs/*, or read "
+            f"{folder}/table.parquet"
+        )
     if not path.is_file():
         raise DataError(f"{folder}: holds no summary.json, expected a folder of `lithofrac run`")
     try:

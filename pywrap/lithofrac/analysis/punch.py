@@ -9,7 +9,7 @@ from lithofrac.analysis.stages import Stages, find_stages
 
 COLUMNS = [
     "case",
-    "cracks",
+    "fracture",
     "compressive_failure",
     "fracture_energy_J_m2",
     "first_peak_MPa",
@@ -39,7 +39,7 @@ def punch(inputs: list[Path], data: Path) -> pd.DataFrame:
         rows.append(
             {
                 "case": run.name,
-                "cracks": run.fracture.replace("_", "-"),
+                "fracture": run.fracture.replace("_", "-"),
                 "compressive_failure": "on" if run.rock.compression else "off",
                 "fracture_energy_J_m2": run.rock.fracture_energy,
                 "first_peak_MPa": peak.stress if peak else nan,

@@ -13,6 +13,8 @@ from scipy.integrate import cumulative_trapezoid
 from lithofrac.data.triaxial import Triaxial
 
 ELASTIC_PART = 0.2  # of the stress difference at the peak: below it a curve counts as elastic
+FEWEST = 4  # rows of a straight piece of a curve
+BENT = 0.5  # of the squared misses of one line: two lines that leave less show a bend, not noise
 GRID = 400  # plastic strains at which the curves are compared
 NEAREST = 0.03  # of the largest plastic strain: rows stand no closer, and none so near to 0
 CLOSE = 0.02  # of the range of a column: a table this near to the curves needs no further row
@@ -45,13 +47,39 @@ def elastic_constants(tests: list[Triaxial]) -> tuple[float, float]:
     """
     moduli, ratios = [], []
     for test in tests:
-        difference = test.axial_stress_MPa - test.confinement_MPa
-        last = max(int(np.argmax(difference > ELASTIC_PART * difference.max())), 3)
+        last = _elastic_rows(test)
         strain = test.axial_strain[:last]
-        moduli.append(np.polyfit(strain, difference[:last], 1)[0])
+        difference = test.axial_stress_MPa[:last] - test.confinement_MPa
+        moduli.append(np.polyfit(strain, difference, 1)[0])
         if test.lateral_strain is not None:
             ratios.append(np.polyfit(strain, test.lateral_strain[:last], 1)[0])
     return float(np.median(moduli)), float(np.median(ratios)) if ratios else float("nan")
+
+
+def _elastic_rows(test: Triaxial) -> int:
+    """Number of first rows that count as elastic.
+
+    Those below `ELASTIC_PART`; where two lines with a bend between them show that the curve has
+    yielded there already, those before the bend.
+    """
+    strain, stress = test.axial_strain, test.axial_stress_MPa - test.confinement_MPa
+    last = max(int(np.argmax(stress > ELASTIC_PART * stress.max())), 3)
+    if last < 2 * FEWEST:
+        return last
+    near = max(FEWEST, last // 4)  # a shorter piece has the slope of its noise
+    bends = range(near, last - near + 1)
+    pieces = [(_straight(strain[:n], stress[:n]), _straight(strain[n:last], stress[n:last]))
+              for n in bends]  # fmt: skip
+    best = int(np.argmin([first[1] + second[1] for first, second in pieces]))
+    (before, missed), (after, missed_too) = pieces[best]
+    bent = missed + missed_too < BENT * _straight(strain[:last], stress[:last])[1]
+    return bends[best] if bent and after < before else last
+
+
+def _straight(strain: np.ndarray, stress: np.ndarray) -> tuple[float, float]:
+    """Slope of the line through points, and the sum of its squared misses."""
+    line = np.polyfit(strain, stress, 1)
+    return float(line[0]), float(np.sum((np.polyval(line, strain) - stress) ** 2))
 
 
 def plastic_parts(test: Triaxial, young: float, poisson: float, dilation: np.ndarray) -> tuple:

@@ -183,5 +183,5 @@ def _sentence(row: dict, run: Run, twin: Run) -> str:
         peaks = [one.name for one in (run, twin) if one.peak]
         parts.append(f"a peak in {peaks[0]} alone" if peaks else "no peak in either")
     if run.discrete and twin.discrete:
-        parts.append(f"cracks {twin.summary['cracks']} to {run.summary['cracks']}")
+        parts.append(f"crack events {twin.summary['cracks']} to {run.summary['cracks']}")
     return "; ".join(parts)

@@ -7,14 +7,13 @@ from itertools import product
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, PrivateAttr, ValidationError, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from lithofrac.config.base import Section
 from lithofrac.config.case import Case, check_case
-from lithofrac.config.errors import ConfigError, one_line, sentences, suggestion
+from lithofrac.config.errors import ConfigError, one_line, suggestion
 from lithofrac.config.extend import beside_or_below, nested, read_draft
-from lithofrac.config.suite import SEED, Name
-from lithofrac.config.yaml_file import read_yaml
+from lithofrac.config.suite import SEED, FileOfCases, Name
 
 MOST = 10_000  # runs of a study
 KEY_IN_NAME = re.compile(r"\{([^{}:]+)(?::([^{}]*))?\}")
@@ -35,7 +34,7 @@ class PlotSection(Section):
     """Of the horizontal axis."""
 
 
-class Study(Section):
+class Study(FileOfCases):
     """Runs that differ in a few keys of one case; `grid` or `cases` says in which."""
 
     title: str
@@ -58,7 +57,6 @@ class Study(Section):
     """Columns of the table: keys of summary.json (`peak_stress_MPa`, `energy.friction_J`), or
     TABLE.COLUMN[KEYS] of a table of the suite (`strength.strength_MPa`)."""
     plot: PlotSection
-    _file: Path = PrivateAttr(default=Path())
     _overrides: dict[str, dict[str, Any]] = PrivateAttr(default_factory=dict)
 
     @model_validator(mode="after")
@@ -198,13 +196,7 @@ def load_study(path: Path | str) -> Study:
     ConfigError
         With one sentence per mistake, one per line.
     """
-    path = Path(path)
-    try:
-        study = Study.model_validate(read_yaml(path))
-    except ValidationError as error:
-        raise sentences(error, Study, lambda keys: str(path)) from None
-    study._file = path
-    return study
+    return Study.read(path)
 
 
 def _split(name: str) -> tuple[str, int]:

@@ -4,7 +4,7 @@ import os
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 from pydantic import Field, PrivateAttr, StringConstraints, ValidationError, model_validator
 
@@ -17,6 +17,29 @@ from lithofrac.config.yaml_file import read_yaml
 
 Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$")]
 SEED = re.compile(r"^(?P<name>.+)@seed(?P<seed>[0-9]+)$")
+
+
+class FileOfCases(Section):
+    """A file that names cases, and where it was read from."""
+
+    _file: Path = PrivateAttr(default=Path())
+
+    @classmethod
+    def read(cls, path: Path | str) -> Self:
+        """Read a file; its cases are checked when they are asked for.
+
+        Raises
+        ------
+        ConfigError
+            With one sentence per mistake, one per line.
+        """
+        path = Path(path)
+        try:
+            found = cls.model_validate(read_yaml(path))
+        except ValidationError as error:
+            raise sentences(error, cls, lambda keys: str(path)) from None
+        found._file = path
+        return found
 
 
 class Entry(Section):
@@ -33,14 +56,13 @@ class Entry(Section):
     left out of the figures of its family."""
 
 
-class Suite(Section):
+class Suite(FileOfCases):
     """Cases that are run together."""
 
     title: str
     """What the suite is, in a few words."""
     cases: dict[Name, Entry] = Field(min_length=1)
     """Name of a case, which is also the name of its results folder -> what it is."""
-    _file: Path = PrivateAttr(default=Path())
 
     @model_validator(mode="after")
     def _twins_are_cases(self):
@@ -101,13 +123,7 @@ def load_suite(path: Path | str) -> Suite:
     ConfigError
         With one sentence per mistake, one per line.
     """
-    path = Path(path)
-    try:
-        suite = Suite.model_validate(read_yaml(path))
-    except ValidationError as error:
-        raise sentences(error, Suite, lambda keys: str(path)) from None
-    suite._file = path
-    return suite
+    return Suite.read(path)
 
 
 def default_suite() -> Path:

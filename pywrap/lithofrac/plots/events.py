@@ -13,7 +13,7 @@ from lithofrac.plots.fractures import MODES
 
 
 def figure(inputs: list[Path], data: Path) -> Figure:
-    """Stress over the cracks, one tick each, over their length; against axial strain.
+    """Stress over the crack edges, one tick each, over their length; against axial strain.
 
     A run without cracks shows its stress alone.
     """
@@ -66,7 +66,7 @@ def draw_stress(axes: Axes, run: Run) -> None:
 
 
 def draw_ticks(axes: Axes, run: Run) -> None:
-    """Draw a tick a crack at the strain at which it opened, one row a mode."""
+    """Draw a tick for each crack edge at the strain at which it opened, one row a mode."""
     for row, (mode, (_, colour)) in enumerate(MODES.items()):
         strain = strain_at(run, run.cracks.loc[run.cracks["mode"] == mode, "time_s"].to_numpy())
         ends = [[(x, -row - 0.4), (x, -row + 0.4)] for x in strain]
@@ -75,6 +75,7 @@ def draw_ticks(axes: Axes, run: Run) -> None:
     labels = [f"{words}: {counts.get(mode, 0)}" for mode, (words, _) in MODES.items()]
     axes.set_yticks(-np.arange(len(MODES)), labels)
     axes.set_ylim(-len(MODES) + 0.4, 0.6)
+    axes.set_ylabel("crack\nedges")
     axes.grid(visible=False)
     axes.tick_params(left=False)
 

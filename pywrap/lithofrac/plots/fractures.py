@@ -45,7 +45,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     draw_modes(by_mode, run, frame, faces, factor)
     draw_bodies(by_time, run, frame, faces, factor)
     lines = draw_times(by_time, frame, faces, times, factor)
-    by_mode.set_title("by mode")
+    by_mode.set_title("crack edges by mode")
     by_time.set_title("by time of insertion")
     for panel in axes[0]:
         _look_closer(panel, frame, faces)
@@ -137,13 +137,13 @@ def draw_bodies(axes: Axes, run: Run, frame: Frame, faces: Faces, factor: float)
     if len(run.cracks) == 0:
         style.badge(axes, "no cracks")
     elif len(faces.lost):
-        style.badge(axes, f"{len(faces.lost)} of {len(run.cracks)} cracks have no face")
+        style.badge(axes, f"{len(faces.lost)} of {len(run.cracks)} crack edges have no face")
 
 
 def draw_modes(
     axes: Axes, run: Run, frame: Frame, faces: Faces, factor: float, counted: bool = True
 ) -> None:
-    """Draw both faces of each crack in the colour of its mode."""
+    """Draw both faces of each crack edge in the colour of its mode; `counted` says how many."""
     moved, table = frame.moved(factor), run.cracks["mode"].to_numpy()
     for mode, (words, colour) in MODES.items():
         chosen = faces.edges[table[faces.crack] == mode]

@@ -210,7 +210,7 @@ def draw_stage(axes: Axes, run: HoleRun, event: Event) -> None:
             )
         )
     if len(cracks):
-        style.badge(axes, f"edges: {len(cracks)}", "upper right")
+        style.badge(axes, f"crack edges: {len(cracks)}", "upper right")
     reach = AROUND * run.radius_mm
     axes.set_aspect("equal")
     axes.set_xlim(-reach, reach)

@@ -78,4 +78,4 @@ def name_parts(drawn: Figure, axes: Axes, run: Run, shade: PolyCollection) -> No
         style.badge(axes, "no plastic strain")
     if run.discrete:
         lines = [Line2D([], [], color=colour, label=words) for words, colour in MODES.values()]
-        drawn.legend(handles=lines, loc="outside lower center", ncols=2, title="cracks")
+        drawn.legend(handles=lines, loc="outside lower center", ncols=2, title="crack edges")

@@ -97,7 +97,7 @@ def draw_cracks(axes: Axes, run: Run) -> str:
     draw_modes(axes, run, frame, faces, 1.0, counted=False)
     opened = int((run.cracks["time_s"] <= time_s).sum())
     kind = "cracks" if run.rock.compression else "tension alone"
-    return f"{run.name}: {kind}\nat {_stress(run, frame):.0f} MPa, {opened} edges opened"
+    return f"{run.name}: {kind}\nat {_stress(run, frame):.0f} MPa, {opened} crack edges"
 
 
 def _draw_mesh(axes: Axes, state: Inelastic, failed: np.ndarray, lines: bool) -> None:

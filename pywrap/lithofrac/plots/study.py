@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from lithofrac.analysis.study import study_of, study_table
 from lithofrac.data import DataError
 from lithofrac.plots import style
+from lithofrac.results.columns import WORDS
 
 MOST_TICKS = 8
 MARKERS = "osD^vPX"
@@ -113,7 +114,7 @@ def words_of(key: str) -> tuple[str, str]:
     own = name.split(".")[-1:] if unit else name.split(".")[-2:]  # `mode` alone says too little
     words = " ".join(own).removesuffix(unit).replace("_", " ")
     more = f" ({keys[1].replace(',', ', ')})" if keys else ""
-    return words + more, UNITS.get(unit, "")
+    return WORDS.get(words, words) + more, UNITS.get(unit, "")
 
 
 def _setting(key: str, value: object) -> str:

@@ -4,6 +4,8 @@ import numpy as np
 import pandas as pd
 from markdown_it import MarkdownIt
 
+from lithofrac.results.columns import WORDS
+
 UNITS = {
     "MPa": "MPa",
     "mm": "mm",
@@ -60,7 +62,7 @@ def header(column: str) -> str:
     for end, unit in UNITS.items():
         if column.endswith(f"_{end}"):
             return f"{column.removesuffix(f'_{end}').replace('_', ' ')} [{unit}]"
-    return column.replace("_", " ")
+    return WORDS.get(column, column.replace("_", " "))
 
 
 def _row(cells: list[str]) -> str:

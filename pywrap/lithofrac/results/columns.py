@@ -1,5 +1,9 @@
 """Columns of the tables of a run, for those who write and those who read them."""
 
+# Keys whose own name leaves open what is counted -> words of a heading or an axis. An event is a
+# failed node that cracked; it may open several edges of the mesh, the rows of cracks.parquet.
+WORDS = {"cracks": "crack events"}
+
 ENERGY_COLUMNS = [
     "time_s",
     "kinetic_J",

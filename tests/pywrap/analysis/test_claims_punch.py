@@ -99,7 +99,7 @@ def test_cracks_of_the_cone_stand_beside_the_axis_no_further_than_the_strip_is_w
     run = Run(make_punch_run("punch_discrete", cracks=[*inside, *outside]))
     (value,) = values("punch_echelon", run).values()
     assert value.value == pytest.approx(75.0)
-    assert value.note.startswith("3 cracks")
+    assert value.note.startswith("3 crack edges")
 
 
 def test_crack_near_the_edge_counts_as_its_own_only_off_the_axis(make_punch_run):

@@ -15,7 +15,7 @@ def test_peak_fall_and_end_are_those_of_the_curve(make_cracked_run, data_folder)
     assert row["first_peak_MPa"] == row["largest_stress_MPa"] == Run(folder).peak.stress
     assert row["lowest_after_peak_MPa"] == pytest.approx(row["stress_at_end_MPa"])
     assert row["lowest_after_peak_MPa"] < 0.5 * row["first_peak_MPa"]
-    assert (row["cracks"], row["compressive_failure"], row["note"]) == (
+    assert (row["fracture"], row["compressive_failure"], row["note"]) == (
         "inter-element",
         "on",
         "no regain",
@@ -28,7 +28,7 @@ def test_peak_fall_and_end_are_those_of_the_curve(make_cracked_run, data_folder)
 
 def test_curve_that_never_falls_has_no_peak(make_run, data_folder):
     row = punch([make_run("punch_gf1200", test="punch", peak=False)], data_folder).iloc[0]
-    assert (row["cracks"], row["note"]) == ("off", "no peak")
+    assert (row["fracture"], row["note"]) == ("off", "no peak")
     assert np.isnan(row["first_peak_MPa"]) and np.isnan(row["lowest_after_peak_MPa"])
     assert row["stress_at_end_MPa"] == row["largest_stress_MPa"]
 

@@ -89,7 +89,7 @@ def test_equal_curves_differ_in_their_cracks_alone(inputs, data_folder):
     assert row["near_axis_percent"] == pytest.approx(100.0)
     # The residual of a dry block is zero: there is no change relative to it.
     assert row["what_changes"] == (
-        "peak stress, strain at peak, work after the peak within 1 %; cracks 3 to 5"
+        "peak stress, strain at peak, work after the peak within 1 %; crack events 3 to 5"
     )
 
 

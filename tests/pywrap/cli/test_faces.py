@@ -1,6 +1,7 @@
 """Help, version, start-up time and exit codes of the words themselves (pywrap/lithofrac/cli.py)."""
 
 import os
+import re
 import subprocess
 import sys
 
@@ -8,9 +9,12 @@ import pytest
 
 import lithofrac
 from lithofrac._build import NATIVE
+from lithofrac.arguments import KINDS
 from lithofrac.cli import COMMANDS, main
+from lithofrac.plots.draw import FIGURES, MOVIES, TABLES
 
 pytestmark = pytest.mark.no_core
+KIND_COLUMN = 15  # of the help of plot; before it stands what a kind is drawn of
 
 
 def words(*arguments) -> subprocess.CompletedProcess:
@@ -29,11 +33,21 @@ def test_help_fits_a_screen():
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_each_command_shows_an_example(command, capsys):
+def test_each_command_shows_an_example_in_lines_that_fit(command, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
     with pytest.raises(SystemExit) as left:
         main([command, "--help"])
     assert left.value.code == 0
-    assert f"example: lithofrac {command}" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert f"example: lithofrac {command}" in said
+    assert max(map(len, said.splitlines())) <= 80
+
+
+def test_help_of_plot_lists_each_kind_where_it_belongs():
+    groups = re.split(r"(?m)^\w+ \(.*\)\n", KINDS)[1:]
+    for group, known in zip(groups, (FIGURES, TABLES, MOVIES), strict=True):
+        listed = " ".join(line[KIND_COLUMN:] for line in group.splitlines()).split()
+        assert sorted(listed) == sorted(known)
 
 
 def test_version_says_how_the_core_was_built():

@@ -12,7 +12,7 @@ from lithofrac.scenes import make_mesh, make_problem
 def blocks(language):
     """Code of that language in the page on own geometries."""
     page = Path("configs/examples/README.md").read_text()
-    return re.findall(rf"```{language}\n(.*?)```", page, flags=re.DOTALL)
+    return re.findall(rf"```{language}[^\n]*\n(.*?)```", page, flags=re.DOTALL)
 
 
 def test_the_keys_on_the_page_are_right(tmp_path):

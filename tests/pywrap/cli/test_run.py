@@ -151,11 +151,11 @@ def test_a_log_gets_plain_lines_and_a_terminal_a_bar():
         progress(REPORT | {"step": 100, "percent": 100.0, "cracks": 7})
         progress.close()
     assert log.getvalue() == (
-        "bar: step 100 of 100 (100 %), 1.0000 ms, 25.0M element-steps/s, 7 cracks, "
+        "bar: step 100 of 100 (100 %), 1.0000 ms, 25.0M element-steps/s, 7 crack events, "
         "energy residual 1.0e-09, 12 s left\n"
     )
     assert "100%" in terminal.getvalue()
-    assert "7 cracks" in terminal.getvalue()
+    assert "7 crack events" in terminal.getvalue()
 
 
 def test_the_signal_of_a_time_limit_is_given_back(tmp_path):

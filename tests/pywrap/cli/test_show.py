@@ -73,7 +73,7 @@ def test_what_no_run_knows_or_has_is_left_out(make_run, shown):
 
 def test_a_value_that_one_run_lacks_is_a_dash(make_run, make_cracked_run, shown):
     lines = shown(make_run("a"), make_cracked_run("b"))
-    assert row(lines, "cracks") == ["-", "3"]
+    assert row(lines, "crack events (failed nodes)") == ["-", "3"]
 
 
 def test_notes_and_the_reason_of_a_failure_stand_below(make_run, shown):
@@ -115,4 +115,13 @@ def test_a_folder_that_is_not_there_is_named(tmp_path, capsys):
     assert main(["show", str(tmp_path / "none")]) == 2
     assert capsys.readouterr().err == (
         f"lithofrac: {tmp_path}/none: no such file or folder, expected a results folder\n"
+    )
+
+
+def test_the_folder_of_a_study_says_what_to_show_instead(tmp_path, capsys):
+    (tmp_path / "study.yaml").write_text("title: T\n")
+    assert main(["show", str(tmp_path)]) == 2
+    assert capsys.readouterr().err == (
+        f"lithofrac: {tmp_path}: is the folder of a study, expected its runs, as {tmp_path}/runs/*,"
+        f" or read {tmp_path}/table.parquet\n"
     )

@@ -24,6 +24,7 @@ def test_a_tick_a_crack_stands_at_the_strain_of_its_insertion(folder, data_folde
     np.testing.assert_allclose(rows[1][:, 0, 0], [1.2])
     labels = [label.get_text() for label in panel.get_yticklabels()]
     assert labels == ["tensile: 2", "compressive dilation: 1"]
+    assert panel.get_ylabel() == "crack\nedges"
 
 
 def test_length_adds_up_to_the_sum_of_all_cracks(folder, data_folder):

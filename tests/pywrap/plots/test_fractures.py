@@ -73,7 +73,8 @@ def test_axes_are_to_scale_in_millimetres_and_say_how_displacements_are_drawn(fo
     assert all(panel.get_aspect() == 1.0 for panel in figure.axes[:2])
     text = words(figure)
     assert "sandstone_soft_p00 at 2 ms, displacements to scale" in text
-    for part in ("x [mm]", "y [mm]", "time of insertion [ms]", "tensile: 2", "dilation: 1"):
+    counted = ("crack edges by mode", "tensile: 2", "dilation: 1")
+    for part in ("x [mm]", "y [mm]", "time of insertion [ms]", *counted):
         assert part in text
 
 
@@ -102,7 +103,7 @@ def test_lost_cracks_and_none_at_all_are_said_in_the_figure(folder, data_folder)
     table.assign(x1_mm=table["x1_mm"] + 0.3 * (table.index == 1)).to_parquet(
         folder / "cracks.parquet"
     )
-    assert "1 of 3 cracks have no face" in words(fractures.figure([folder], data_folder))
+    assert "1 of 3 crack edges have no face" in words(fractures.figure([folder], data_folder))
     table.iloc[:0].to_parquet(folder / "cracks.parquet")
     figure = fractures.figure([folder], data_folder)
     assert "no cracks" in words(figure)

@@ -84,7 +84,7 @@ def test_nothing_to_draw_and_no_logarithm_are_refused(drawn):
         ("material.fracture_energy_J_m2", ("fracture energy", "J/m²")),
         ("loading.speed_m_s", ("speed", "m/s")),
         ("contact.friction.rock-platen", ("friction rock-platen", "")),
-        ("cracks", ("cracks", "")),
+        ("cracks", ("crack events", "")),
         (
             "hole_initiation.initiation_MPa[primary,crack]",
             ("initiation (primary, crack)", "MPa"),

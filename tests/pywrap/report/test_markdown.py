@@ -14,6 +14,7 @@ pytestmark = pytest.mark.no_core
         ("strength_min_MPa", "strength min [MPa]"),
         ("rms_percent", "rms [%]"),
         ("case", "case"),
+        ("cracks", "crack events"),
         ("energy_residual", "energy residual"),
         ("crack_energy_at_1_mm_J_m2", "crack energy at 1 mm [J/m²]"),
     ],

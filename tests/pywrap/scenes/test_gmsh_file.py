@@ -1,113 +1,29 @@
-"""Geometries of one's own: meshes, groups, loads and what is refused (scenes/gmsh_file.py)."""
+"""Geometries of one's own: meshes, groups and loads (scenes/gmsh_file.py)."""
 
-import re
 import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from own_geometry import (
+    APART,
+    CAP,
+    GROUPS,
+    KIRSCH_LOADING,
+    MSH,
+    OWN,
+    SQUARE,
+    by_gmsh,
+    hole_as_geo,
+    same,
+)
 
 from lithofrac.config import ConfigError, find_case, load_case
 from lithofrac.config.setting import text_of
-from lithofrac.scenes import _gmsh, hole_quarter, make_mesh, make_problem
+from lithofrac.scenes import make_mesh, make_problem
 
 pytestmark = pytest.mark.no_core
-
-SQUARE = """\
-Point(1) = {0, 0, 0, 3};
-Point(2) = {10, 0, 0, 3};
-Point(3) = {10, 20, 0, 3};
-Point(4) = {0, 20, 0, 3};
-Line(1) = {1, 2};
-Line(2) = {2, 3};
-Line(3) = {3, 4};
-Line(4) = {4, 1};
-Curve Loop(1) = {1, 2, 3, 4};
-Plane Surface(1) = {1};
-"""
-GROUPS = """\
-Physical Surface("rock") = {1};
-Physical Curve("bottom") = {1};
-Physical Curve("right") = {2};
-Physical Curve("top") = {3};
-"""
-CAP = """\
-Point(5) = {10, 25, 0, 3};
-Point(6) = {0, 25, 0, 3};
-Line(5) = {3, 5};
-Line(6) = {5, 6};
-Line(7) = {6, 4};
-Curve Loop(2) = {-3, 5, 6, 7};
-Plane Surface(2) = {2};
-Physical Surface("cap") = {2};
-Physical Curve("back") = {6};
-"""
-APART = """\
-Point(13) = {10, 20, 0, 3};
-Point(14) = {0, 20, 0, 3};
-Point(5) = {10, 25, 0, 3};
-Point(6) = {0, 25, 0, 3};
-Line(13) = {13, 14};
-Line(5) = {13, 5};
-Line(6) = {5, 6};
-Line(7) = {6, 14};
-Curve Loop(2) = {-13, 5, 6, 7};
-Plane Surface(2) = {2};
-Physical Surface("cap") = {2};
-Physical Curve("back") = {6};
-"""
-CASE = """\
-title: Own
-material: sandstone
-scene: {kind: gmsh_file, file: own.geo, length_unit: mm}
-loading: {kind: boundaries, held: {bottom: y}, pressed_MPa: {top: 5}}
-"""
-
-
-@pytest.fixture
-def case_of(tmp_path):
-    """case_of(geo, case=CASE, key=value...): a case and its file beside each other."""
-
-    def made(geo, case=CASE, name="own.geo", **overrides):
-        (tmp_path / name).write_text(geo)
-        (tmp_path / "own.yaml").write_text(case)
-        keys = {key.replace("__", "."): value for key, value in overrides.items()}
-        return load_case(tmp_path / "own.yaml", keys)
-
-    return made
-
-
-@pytest.fixture
-def refused(case_of):
-    """refused(geo, ...): what is said of a file, without its name."""
-
-    def attempt(geo, *more, **overrides):
-        case = case_of(geo, *more, **overrides)
-        with pytest.raises(ConfigError) as caught:
-            make_problem(case, make_mesh(case))
-        return str(caught.value).removeprefix(f"scene.file = {case.scene.file}: ")
-
-    return attempt
-
-
-def by_gmsh(geo, path, *options):
-    """Mesh a text by hand, as a user would."""
-    script = path.with_suffix(".by_hand.geo")
-    script.write_text(geo)
-    done = subprocess.run(
-        [*_gmsh._gmsh(), script, "-2", "-o", path, "-v", "2", *options], capture_output=True
-    )
-    assert done.returncode == 0
-
-
-def same(a, b):
-    assert np.array_equal(a.nodes, b.nodes)
-    assert np.array_equal(a.triangles, b.triangles)
-    assert np.array_equal(a.body, b.body)
-    assert a.body_names == b.body_names
-    assert a.edge_sets.keys() == b.edge_sets.keys()
-    assert all(np.array_equal(a.edge_sets[name], b.edge_sets[name]) for name in a.edge_sets)
 
 
 def test_physical_groups_are_bodies_and_boundaries(case_of):
@@ -141,7 +57,7 @@ def test_lengths_are_in_the_unit_that_is_named(case_of, unit, height):
 def test_a_mesh_file_is_read_as_it_is(case_of, tmp_path, options):
     whole = make_mesh(case_of(SQUARE + GROUPS + CAP))
     geo = "Mesh.Algorithm = 6;\nMesh.Smoothing = 10;\n" + SQUARE + GROUPS + CAP
-    case = case_of("", CASE.replace("own.geo", "own.msh"), name="own.msh")
+    case = case_of("", MSH, name="own.msh")
     by_gmsh(geo, tmp_path / "own.msh", *options)
     read = make_mesh(case)
     if "msh22" in options:
@@ -152,7 +68,7 @@ def test_a_mesh_file_is_read_as_it_is(case_of, tmp_path, options):
 
 def test_a_curve_in_two_groups_needs_format_2(case_of, tmp_path):
     """meshio keeps one group of each curve of format 4."""
-    case = case_of("", CASE.replace("own.geo", "own.msh"), name="own.msh")
+    case = case_of("", MSH, name="own.msh")
     geo = SQUARE + GROUPS + 'Physical Curve("ends") = {1, 3};\n'
     by_gmsh(geo, tmp_path / "own.msh", "-format", "msh22")
     sets = make_mesh(case).edge_sets
@@ -164,31 +80,18 @@ def test_a_curve_in_two_groups_needs_format_2(case_of, tmp_path):
 
 
 def test_a_mesh_file_has_one_realisation(case_of, tmp_path):
-    case = case_of("", CASE.replace("own.geo", "own.msh"), name="own.msh")
+    case = case_of("", MSH, name="own.msh")
     by_gmsh(SQUARE + GROUPS, tmp_path / "own.msh")
     with pytest.raises(ConfigError, match=r"^mesh\.seed = 2: a \.msh is one mesh, expected 1$"):
         make_mesh(case, 2)
 
 
 def test_a_built_in_scene_written_as_a_geo_has_the_same_bits(case_of, monkeypatch):
-    written = []
-    monkeypatch.setattr(
-        hole_quarter, "mesh_from", lambda geo: written.append(geo) or _gmsh.mesh_from(geo)
-    )
     built_in = find_case("kirsch")
-    mesh = make_mesh(built_in)
-    head = "".join(line for line in _gmsh.HEAD.splitlines(True) if "General" not in line)
-    loading = """\
-loading:
-  kind: boundaries
-  held: {bottom: y, left: x}
-  pressed_MPa: {top: 1.0}
-  ramp_transits: 40  # of half the height of the block
-  hold_transits: 80
-"""
-    text = CASE.split("loading")[0] + loading
+    mesh, geo = hole_as_geo(built_in, monkeypatch)
+    text = OWN.split("loading")[0] + KIRSCH_LOADING
     material = {"extends": "tyndall_limestone", "elastic": True}
-    own = case_of(head + written[0], text, scene__length_unit="m", material=material)
+    own = case_of(geo, text, scene__length_unit="m", material=material)
     same(make_mesh(own), mesh)
     a, b = make_problem(own, mesh), make_problem(built_in, mesh)
     assert (a.end_time, a.damping, a.materials) == (b.end_time, b.damping, b.materials)
@@ -221,7 +124,7 @@ loading:
   speed_m_s: 0.02
   ramp_transits: 10
 """
-    case = case_of(SQUARE + GROUPS, CASE.split("loading")[0] + loading)
+    case = case_of(SQUARE + GROUPS, OWN.split("loading")[0] + loading)
     problem = make_problem(case, make_mesh(case))
     loads = {load.name: load for load in problem.velocity_loads}
     assert set(loads) == {"bottom_x", "bottom_y", "top_x", "top_y"}
@@ -264,191 +167,6 @@ def test_bodies_have_their_own_materials_and_friction(case_of):
     problem = make_problem(case, make_mesh(case))
     assert [material.title.split()[0] for material in problem.materials] == ["Sandstone", "Steel"]
     assert problem.contact.table(problem.mesh)[0].tolist() == [1.2, 0.1]
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        (
-            "",
-            "has no physical surface with a name, expected one for each body, as in "
-            'Physical Surface("rock") = {1};',
-        ),
-        ("Physical Surface(7) = {1};", "has no physical surface with a name, expected one for "),
-        (GROUPS + 'Physical Curve("left") = {};', "the physical curve 'left' is empty"),
-        (GROUPS + 'Physical Surface("cap") = {};', "the physical surface 'cap' is empty"),
-        (
-            GROUPS + "Recombine Surface {1};",
-            "holds elements of type quad, expected triangles of three nodes alone",
-        ),
-        (
-            GROUPS + "Mesh.ElementOrder = 2;",
-            "holds elements of type line3, expected triangles of three nodes alone",
-        ),
-        (
-            GROUPS + 'Physical Surface("again") = {1};',
-            "triangles are in two physical surfaces, expected each in one",
-        ),
-        (
-            GROUPS + 'Point(9) = {0, 30, 0, 3};\nLine(9) = {4, 9};\nPhysical Curve("apart") = {9};',
-            "the physical curve 'apart' is not made of sides of the triangles",
-        ),
-        (
-            GROUPS + "Translate {0, 0, 1} { Surface {1}; }",
-            "reaches from z = 1 to 1, expected the plane z = 0",
-        ),
-        (GROUPS + "Line(9) = {1, 99};", "gmsh gave no mesh: "),
-        (GROUPS + "Exit;", "gmsh gave no mesh: no message"),
-        (GROUPS + "oops oops;", "gmsh gave no mesh: line 15: Unknown variable 'oops'"),
-    ],
-    ids=["none", "unnamed", "curve", "surface", "quads", "order", "twice", "apart", "z", "point",
-         "exit", "syntax"],
-)  # fmt: skip
-def test_a_file_that_is_no_scene_is_refused_in_one_sentence(refused, text, message):
-    said = refused(SQUARE + text)
-    assert message in said
-    assert "\n" not in said
-
-
-def test_no_surface_at_all_is_refused(refused):
-    assert refused("Point(1) = {0, 0, 0};\n").startswith(("gmsh gave no mesh", "holds no triangl"))
-
-
-def test_a_file_of_other_words_is_refused(refused, tmp_path):
-    said = refused("no mesh\n", CASE.replace("own.geo", "own.msh"), name="own.msh")
-    assert said.startswith("no mesh that can be read, expected Gmsh's format 2.2 or 4.1 (")
-    assert "\n" not in said
-
-
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize(
-    ("place", "message"),
-    [
-        ("1e155 -1e194", "holds a node at 1e+194, expected at most 1e+12"),
-        ("nan 0", "holds nodes at no place, expected numbers"),
-        ("1e400 0", "holds nodes at no place, expected numbers"),
-    ],
-)
-def test_nodes_that_are_nowhere_are_refused(refused, tmp_path, place, message):
-    by_gmsh(SQUARE + GROUPS, tmp_path / "own.msh", "-format", "msh22")
-    text = re.sub(r"(?m)^1 0 0 0$", f"1 {place} 0", (tmp_path / "own.msh").read_text())
-    assert refused(text, CASE.replace("own.geo", "own.msh"), name="own.msh") == message
-
-
-def test_a_mesh_file_that_has_lost_an_end_is_refused(refused, tmp_path, capfd):
-    by_gmsh(SQUARE + GROUPS, tmp_path / "own.msh", "-format", "msh22")
-    text = (tmp_path / "own.msh").read_text().replace("$EndMeshFormat", "$EndMeshFromat")
-    assert refused(text, CASE.replace("own.geo", "own.msh"), name="own.msh") == (
-        "no mesh that can be read, expected Gmsh's format 2.2 or 4.1 ($MeshFormat not closed by "
-        "$EndMeshFormat.)"
-    )
-    assert capfd.readouterr().err == ""
-
-
-@pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        (
-            {"loading__held": {"botom": "y"}},
-            "loading.held.botom: no such physical curve, did you mean 'bottom'?",
-        ),
-        (
-            {"scene__materials": {"cap": "steel"}},
-            "scene.materials.cap: no such physical surface, expected one of: rock",
-        ),
-        (
-            {"scene__materials": {"rock": "steel"}},
-            "scene.materials: names all physical surfaces, expected one that is of the material "
-            "of the case",
-        ),
-        (
-            {"contact": {"friction": {"rock-steel": 0.1}}},
-            "contact.friction.rock-steel = 0.1: unknown surface 'steel', expected one of: bottom, "
-            "right, rock, top",
-        ),
-        (
-            {"loading__driven": {"top": {"y_mm": -1}, "right": {"y_mm": 1}},
-             "loading__speed_m_s": 1},
-            "loading.driven.right: moves its node at (10, 20) mm along y otherwise than "
-            "loading.driven.top, expected the same",
-        ),
-    ],
-    ids=["curve", "surface", "all", "friction", "twice"],
-)  # fmt: skip
-def test_names_that_the_file_lacks_are_refused(refused, keys, message):
-    assert refused(SQUARE + GROUPS, **keys) == message
-
-
-def test_a_curve_inside_is_not_pressed(refused):
-    assert refused(SQUARE + GROUPS + CAP) == (
-        "loading.pressed_MPa.top: the curve lies inside of the mesh, expected a boundary"
-    )
-
-
-def test_elements_above_the_limit_are_refused_with_their_body(refused):
-    said = refused(
-        SQUARE + GROUPS + APART, scene__length_unit="m", scene__materials={"cap": "steel"}
-    )
-    assert said.startswith("physical surface 'rock': crack band width ")
-    assert "is not below the limit of 280 mm" in said
-
-
-def test_bodies_at_one_place_need_contact(case_of):
-    case = case_of(SQUARE + GROUPS + APART, scene__materials={"cap": "steel"}, contact={})
-    make_problem(case, make_mesh(case))
-    case = case_of(SQUARE + GROUPS + APART, scene__materials={"cap": "steel"})
-    with pytest.raises(ConfigError, match=r"^nodes \d+ and \d+ of the mesh are within 1e-06 of "):
-        make_problem(case, make_mesh(case))
-
-
-def test_a_mesh_with_a_flaw_is_refused_with_its_place(refused):
-    """A hinge; other flaws are those of any mesh, see mesh_flaws.py."""
-    corner = """\
-Point(7) = {15, 20, 0, 3};
-Point(8) = {15, 25, 0, 3};
-Line(8) = {3, 7};
-Line(9) = {7, 8};
-Line(10) = {8, 3};
-Curve Loop(3) = {8, 9, 10};
-Plane Surface(3) = {3};
-"""
-    said = refused(SQUARE + corner + GROUPS.replace("{1};", "{1, 3};", 1))
-    assert re.fullmatch(
-        r"node \d+ joins parts that share no edge, expected a node of its own in each", said
-    )
-
-
-@pytest.mark.parametrize(
-    ("line", "word"),
-    [
-        ('SystemCall "touch TOUCHED";', "SystemCall"),
-        ('System "touch TOUCHED";', "System"),
-        ('Include "other.geo";', "Include"),
-        ('Merge"other.msh";', "Merge"),
-        ('Save "TOUCHED";', "Save"),
-        ('Print "TOUCHED";', "Print"),
-        ('Printf("a") > "TOUCHED";', "Printf"),
-        ('Field[1] = ExternalProcess;\nField[1].CommandLine = "touch TOUCHED";', "ExternalProcess"),
-        ('CreateDir "TOUCHED";', "CreateDir"),
-        ('OnelabRun("a", "touch TOUCHED");', "OnelabRun"),
-        ('General.LogFileName = "TOUCHED";', "General"),
-        (
-            'DefineString[a = {"TOUCHED", GmshOption StrCat("Gen", "eral.LogFileName")}];',
-            "GmshOption",
-        ),
-        ('OnelabAction "reset";', "OnelabAction"),
-        ('/* " */ SystemCall "touch TOUCHED"; // "', "SystemCall"),
-    ],
-)
-def test_a_script_that_could_do_more_than_mesh_is_refused(refused, tmp_path, line, word):
-    touched = tmp_path / "touched"
-    said = refused(SQUARE + GROUPS + line.replace("TOUCHED", str(touched)))
-    assert said.startswith(f"line 15: the word {word} is refused, even in a comment, because it ")
-    assert not touched.exists()
-
-
-def test_words_that_only_begin_alike_are_not_refused(case_of):
-    assert len(make_mesh(case_of(SQUARE + GROUPS + "Saved = 1; // Printing, Includes")).nodes)
 
 
 def test_the_file_and_materials_stand_beside_the_file_that_names_them(case_of, tmp_path):
