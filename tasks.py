@@ -41,8 +41,8 @@ COVERAGE_ASKED = 90  # percent of the lines below fortran/
 # one more run of all tests would cost more than it could tell.
 BUILDS = {
     "release": "",
-    "checked": "-Dbuildtype=debug -Doptimization=1 -Dchecked=true -Db_coverage=true",
-    "sanitize": "-Dbuildtype=debug -Doptimization=1 -Db_sanitize=address,undefined"
+    "checked": "-Dbuildtype=debug -Doptimization=1 -Db_lto=false -Dchecked=true -Db_coverage=true",
+    "sanitize": "-Dbuildtype=debug -Doptimization=1 -Db_lto=false -Db_sanitize=address,undefined"
     " -Db_lundef=false",
     "portable": "-Dnative=false",
 }

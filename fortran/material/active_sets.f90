@@ -9,11 +9,12 @@ module lithofrac_material_active_sets
    implicit none
    private
 
-   public :: n_groups, n_members, member_high, member_low, no_planes, apex
+   public :: n_groups, n_members, member_high, member_low, no_planes, main_plane, apex
    public :: feasible, edge_of, plane_bit, tension_count
 
    integer, parameter :: n_groups = 14
    integer, parameter :: no_planes = 1  !! group without Mohr-Coulomb planes
+   integer, parameter :: main_plane = 2 !! group of the plane of the extreme trial stresses
    integer, parameter :: apex = 14      !! group of all six planes
 
    !> Planes in each group; the apex is treated on its own.

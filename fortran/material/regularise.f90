@@ -12,12 +12,12 @@
 module lithofrac_material_regularise
    use lithofrac_base_kinds, only: wp
    use lithofrac_material_rock, only: rock_type
-   use lithofrac_material_table, only: table_type
+   use lithofrac_material_table, only: table_segment, table_type
    use lithofrac_material_tension_planes, only: softening_modulus
    implicit none
    private
 
-   public :: regularises, rock_of_band, table_strain
+   public :: regularises, rock_of_band, segment_of_band, table_strain
 
 contains
 
@@ -60,6 +60,31 @@ contains
       shrink = softening/softening_modulus(rock, rock%reference_width)
       k = shrink*ep_eff + (1.0_wp - shrink)*onset
    end function table_strain
+
+   !> Segment of the tables that holds a strain in a band, where it starts and ends there, and how
+   !> much longer it is than in the tables as they stand.
+   pure subroutine segment_of_band(rock, softening, ep_eff, segment, origin, knot, stretch)
+      type(rock_type), intent(in) :: rock
+      real(wp), intent(in) :: softening       !! H of the band, negative [Pa]
+      real(wp), intent(in) :: ep_eff          !! effective plastic strain [-]
+      integer, intent(out) :: segment
+      real(wp), intent(out) :: origin         !! [-]
+      real(wp), intent(out) :: knot           !! huge beyond the last row [-]
+      real(wp), intent(out) :: stretch        !! [-]
+
+      real(wp) :: start
+
+      segment = table_segment(rock%cohesion, table_strain(rock, softening, ep_eff))
+      origin = rock%cohesion%origin(segment)
+      knot = huge(knot)
+      if (segment < rock%cohesion%n) knot = rock%cohesion%x(segment + 1)
+      stretch = 1.0_wp
+      if (.not. regularises(rock) .or. segment < rock%onset) return
+      start = rock%cohesion%x(rock%onset)
+      stretch = softening_modulus(rock, rock%reference_width)/softening
+      origin = stretch*origin + (1.0_wp - stretch)*start
+      if (segment < rock%cohesion%n) knot = stretch*knot + (1.0_wp - stretch)*start
+   end subroutine segment_of_band
 
    !> Move the rows beyond row `onset` away from it. A stretch of 1 changes no bit.
    pure subroutine stretch_table(table, onset, stretch)

@@ -13,14 +13,13 @@
 module lithofrac_material_return_map
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: no_return_map, ok
-   use lithofrac_material_active_sets, only: apex, edge_of, member_high, member_low, &
-      n_members, no_planes, plane_bit
+   use lithofrac_material_active_sets, only: apex, edge_of, main_plane, &
+      member_high, member_low, n_members, no_planes, plane_bit
    use lithofrac_material_fixed_strength, only: flow_type, free_choice, return_to_any, &
       return_to_set, trial_type
    use lithofrac_material_flow_split, only: least_flow_at_apex, least_flow_of_equal_maxima, &
       least_flow_of_equal_minima
    use lithofrac_material_mohr_coulomb, only: main_plane_yield, mobilise, mobilised_type
-   use lithofrac_material_pyramid_return, only: return_to_pyramid
    use lithofrac_material_rock, only: rock_type
    use lithofrac_material_tension_planes, only: softened_strength
    implicit none
@@ -62,10 +61,9 @@ contains
       integer, intent(out) :: code                !! `ok` or `no_return_map`
 
       type(trial_type) :: sorted
-      type(mobilised_type) :: now
       type(sample_type) :: best
       integer :: order(3)
-      logical :: found, mixed, opens
+      logical :: found, mixed
       real(wp) :: rounding
 
       dep = 0.0_wp
@@ -85,23 +83,11 @@ contains
          + (abs(sorted%t(1)) + abs(sorted%t(3)) + rock%strength_scale)/sorted%g2)
       sorted%compression = rock%compression
       sorted%total = rock%total_hardening
-      opens = any(sorted%t - sorted%ft > rock%yield_tolerance)
-      if (rock%compression) then
-         call mobilise(rock, ep_eff, now)
-         if (.not. opens .and. main_plane_yield(now, sorted%t) <= rock%yield_tolerance) return
-      else if (.not. opens) then
-         return
-      end if
+      best%flow = likely_flow(rock, sorted, ep_eff)
+      if (best%flow%group == no_planes .and. best%flow%tension == 0) return
 
-      found = .false.
-      mixed = .false.
-      if (.not. opens) then
-         call return_to_pyramid(rock, sorted, ep_eff, now, best%e, best%flow, found)
-      end if
-      if (.not. found) then
-         call search(rock, sorted, ep_eff, free_choice, best, mixed, found)
-         if (rock%explicit_coupling) call search_explicit(rock, sorted, ep_eff, best, mixed, found)
-      end if
+      call search(rock, sorted, ep_eff, free_choice, best, mixed, found)
+      if (rock%explicit_coupling) call search_explicit(rock, sorted, ep_eff, best, mixed, found)
       if (.not. found) then
          code = no_return_map
          return
@@ -111,6 +97,26 @@ contains
       dep_compressive(order) = best%flow%x
       active = active_mask(best%flow, order, mixed)
    end subroutine return_to_surface
+
+   !> The planes that the trial stress lies beyond: most often those that it returns to.
+   pure function likely_flow(rock, trial, e_old) result(flow)
+      type(rock_type), intent(in) :: rock
+      type(trial_type), intent(in) :: trial
+      real(wp), intent(in) :: e_old
+      type(flow_type) :: flow
+
+      type(mobilised_type) :: now
+      integer :: i
+
+      do i = 1, 3
+         if (trial%t(i) - trial%ft(i) > rock%yield_tolerance) flow%tension = ibset(flow%tension, i - 1)
+      end do
+      flow%group = no_planes
+      if (.not. rock%compression) return
+      call mobilise(rock, e_old, now)
+      ! Not "greater than": a stress that is not a number is not elastic.
+      if (.not. main_plane_yield(now, trial%t) <= rock%yield_tolerance) flow%group = main_plane
+   end function likely_flow
 
    !> Smallest root of F, walking the segments of the tables from knot to knot.
    !> Where g grows, steps of -F cannot pass the first root; they double inside a segment.

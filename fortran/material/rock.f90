@@ -8,6 +8,7 @@ module lithofrac_material_rock
    use lithofrac_base_kinds, only: pi, wp
    use lithofrac_base_status, only: bad_input, ok, set_failure, status_type
    use lithofrac_material_table, only: new_table, table_type
+   use lithofrac_math_angles, only: sine_cosine_of
    implicit none
    private
 
@@ -145,11 +146,13 @@ contains
    pure subroutine set_scales(rock)
       type(rock_type), intent(inout) :: rock
 
+      real(wp) :: cos_phi
+
       rock%strength_scale = rock%tensile_strength
       if (rock%compression) then
          rock%strength_scale = max(rock%strength_scale, maxval(rock%cohesion%y(:rock%cohesion%n)))
-         rock%sin_phi0 = sin(rock%friction%y(0))
-         rock%c_cos_phi0 = rock%cohesion%y(0)*cos(rock%friction%y(0))
+         call sine_cosine_of(rock%friction%y(0), rock%sin_phi0, cos_phi)
+         rock%c_cos_phi0 = rock%cohesion%y(0)*cos_phi
       end if
       if (.not. rock%strength_scale > 0.0_wp) rock%strength_scale = rock%young
       rock%yield_tolerance = relative_tolerance*rock%strength_scale

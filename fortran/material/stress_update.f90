@@ -8,6 +8,8 @@ module lithofrac_material_stress_update
    use lithofrac_base_status, only: no_return_map, ok
    use lithofrac_material_crack_axes, only: follow_axes, turn_crack
    use lithofrac_material_mohr_coulomb, only: strength_coefficients
+   use lithofrac_material_pyramid_return, only: pack, padded, pyramid_return_type, &
+      return_to_pyramid
    use lithofrac_material_regularise, only: regularises, rock_of_band, table_strain
    use lithofrac_material_return_map, only: return_to_surface
    use lithofrac_material_rock, only: rock_type
@@ -16,7 +18,7 @@ module lithofrac_material_stress_update
    implicit none
    private
 
-   public :: point_type, virgin_point, update_stress, strength_of_band, softening_modulus
+   public :: point_type, virgin_point, update_pack, strength_of_band, softening_modulus
    public :: substep_bit
 
    integer, parameter :: substep_bit = 11  !! set in `active` when the step was cut
@@ -41,32 +43,82 @@ contains
       point%ft = rock%tensile_strength
    end function virgin_point
 
-   !> Take one step. `sigma = trial - C : dep` holds to rounding.
+   !> Take one step of up to `pack` points. `sigma = trial - C : dep` holds to rounding.
+   !> What each gets does not depend on the others.
    !>
    !> `active` is zero for an elastic step. Its bits 0 to 2 are the tension planes of axes 1 to
    !> 3 of the point, bits 3 to 8 the Mohr-Coulomb planes (larger, smaller stress) = (1,2),
    !> (1,3), (2,1), (2,3), (3,1), (3,2), bit 9 the apex, bit 10 a mixture of two sets that
    !> share their stress, bit 11 a step that was cut (then the planes of all parts).
    !> On `code == no_return_map` point and stress stay as they were at the start of the step.
+   pure subroutine update_pack(rock, count, softening, old, trial, point, sigma, dep, &
+      dep_compressive, strength, active, code)
+      type(rock_type), intent(in) :: rock
+      integer, intent(in) :: count                 !! points, 1 to `pack`
+      real(wp), intent(in) :: softening(pack)      !! H, not positive [Pa]
+      real(wp), intent(in) :: old(4, pack)         !! stress at the start of the step [Pa]
+      real(wp), intent(in) :: trial(4, pack)       !! elastic trial stress [Pa]
+      type(point_type), intent(inout) :: point(pack)
+      real(wp), intent(out) :: sigma(4, pack)      !! stress at the end of the step [Pa]
+      real(wp), intent(out) :: dep(4, pack)        !! inelastic strain increment [-]
+      real(wp), intent(out) :: dep_compressive(4, pack)  !! its Mohr-Coulomb part [-]
+      real(wp), intent(out) :: strength(2, pack)   !! sin(phi), c cos(phi) [Pa] of points that flow
+      integer, intent(out) :: active(pack)         !! planes with flow
+      integer, intent(out) :: code(pack)           !! `ok` or `no_return_map`
+
+      type(pyramid_return_type) :: quick
+      integer :: i, lane
+      real(wp) :: axis(pack, 2), ep_eff(pack), ft(pack, 3), normal(pack, 3), slope(pack)
+
+      sigma(:, :count) = trial(:, :count)
+      dep(:, :count) = 0.0_wp
+      dep_compressive(:, :count) = 0.0_wp
+      active(:count) = 0
+      code(:count) = ok
+      if (.not. rock%yields) return
+      do lane = 1, padded(count)
+         i = min(lane, count)
+         axis(lane, :) = point(i)%axis
+         call follow_axes(trial(:, i), axis(lane, :))
+         normal(lane, :) = normal_components(trial(:, i), axis(lane, :))
+         ft(lane, :) = point(i)%ft
+         ep_eff(lane) = point(i)%ep_eff
+         slope(lane) = softening(i)
+      end do
+      call return_to_pyramid(rock, padded(count), slope, normal, ft, ep_eff, quick)
+      do i = 1, count
+         if (.not. quick%done(i)) then
+            call update_stress(rock, softening(i), old(:, i), trial(:, i), point(i), sigma(:, i), &
+               dep(:, i), dep_compressive(:, i), active(i), code(i))
+            if (active(i) /= 0) call strength_of_band(rock, softening(i), point(i)%ep_eff, &
+               strength(1, i), strength(2, i))
+            cycle
+         end if
+         point(i)%axis = axis(i, :)
+         active(i) = quick%active(i)
+         if (active(i) == 0) cycle
+         point(i)%ep_eff = quick%e(i)
+         strength(:, i) = [quick%sin_phi(i), quick%c_cos_phi(i)]
+         call apply_flow(rock, softening(i), trial(:, i), quick%dep(i, :), point(i), sigma(:, i), &
+            dep(:, i))
+         dep_compressive(:, i) = dep(:, i)
+      end do
+   end subroutine update_pack
+
+   !> One point of a rock that yields, by the general search.
    pure subroutine update_stress(rock, softening, old, trial, point, sigma, dep, &
       dep_compressive, active, code)
       type(rock_type), intent(in) :: rock
-      real(wp), intent(in) :: softening            !! H, not positive [Pa]
-      real(wp), intent(in) :: old(4)               !! stress at the start of the step [Pa]
-      real(wp), intent(in) :: trial(4)             !! elastic trial stress [Pa]
+      real(wp), intent(in) :: softening
+      real(wp), intent(in) :: old(4)
+      real(wp), intent(in) :: trial(4)
       type(point_type), intent(inout) :: point
-      real(wp), intent(out) :: sigma(4)            !! stress at the end of the step [Pa]
-      real(wp), intent(out) :: dep(4)              !! inelastic strain increment [-]
-      real(wp), intent(out) :: dep_compressive(4)  !! its Mohr-Coulomb part [-]
-      integer, intent(out) :: active               !! planes with flow
-      integer, intent(out) :: code                 !! `ok` or `no_return_map`
+      real(wp), intent(inout) :: sigma(4)
+      real(wp), intent(inout) :: dep(4)
+      real(wp), intent(inout) :: dep_compressive(4)
+      integer, intent(inout) :: active
+      integer, intent(inout) :: code
 
-      sigma = trial
-      dep = 0.0_wp
-      dep_compressive = 0.0_wp
-      active = 0
-      code = ok
-      if (.not. rock%yields) return
       if (regularises(rock)) then
          call update_in_band(rock, softening, old, trial, point, sigma, dep, dep_compressive, &
             active, code)
@@ -146,7 +198,7 @@ contains
       integer, intent(out) :: active
       integer, intent(out) :: code
 
-      real(wp) :: axis(2), d(3), ft(3), normal(3), volume, x(3)
+      real(wp) :: axis(2), d(3), normal(3), x(3)
 
       axis = point%axis
       call follow_axes(trial, axis)
@@ -159,18 +211,33 @@ contains
       point%axis = axis
       if (active == 0) return
 
-      dep = tensor_from_axes(d, axis)
+      call apply_flow(rock, softening, trial, d, point, sigma, dep)
       dep_compressive = tensor_from_axes(x, axis)
+      dep_compressive(4) = 2.0_wp*dep_compressive(4)
+   end subroutine take_step
+
+   !> Stress, strengths and crack after a flow along the axes of the point.
+   pure subroutine apply_flow(rock, softening, trial, d, point, sigma, dep)
+      type(rock_type), intent(in) :: rock
+      real(wp), intent(in) :: softening
+      real(wp), intent(in) :: trial(4)
+      real(wp), intent(in) :: d(3)             !! inelastic strain increments [-]
+      type(point_type), intent(inout) :: point !! whose axes have followed the stress
+      real(wp), intent(out) :: sigma(4)
+      real(wp), intent(out) :: dep(4)          !! engineering shear
+
+      real(wp) :: ft(3), volume
+
+      dep = tensor_from_axes(d, point%axis)
       volume = rock%lame*(dep(1) + dep(2) + dep(3))
       sigma = trial - 2.0_wp*rock%shear*dep - [volume, volume, volume, 0.0_wp]
       dep(4) = 2.0_wp*dep(4)
-      dep_compressive(4) = 2.0_wp*dep_compressive(4)
 
       ft = softened_strength(point%ft, softening, d)
-      call turn_crack((point%ft(:2) - ft(:2))/rock%tensile_strength, axis, point%crack)
+      call turn_crack((point%ft(:2) - ft(:2))/rock%tensile_strength, point%axis, point%crack)
       point%ft = ft
       point%opening = point%opening + max(d, 0.0_wp)
-   end subroutine take_step
+   end subroutine apply_flow
 
    !> The step in `parts` equal pieces; the state moves only if every piece returns.
    pure subroutine take_parts(rock, softening, old, trial, parts, point, sigma, dep, &

@@ -5,8 +5,9 @@
 module lithofrac_mechanics_internal_force
    use lithofrac_base_kinds, only: wp
    use lithofrac_base_status, only: ok
+   use lithofrac_material_pyramid_return, only: pack, padded
    use lithofrac_material_rock, only: rock_type
-   use lithofrac_material_stress_update, only: point_type, strength_of_band, update_stress
+   use lithofrac_material_stress_update, only: point_type, update_pack
    use lithofrac_mechanics_chunks, only: chunks_type, width
    use lithofrac_mechanics_fields, only: fields_type, inelastic_type
    use lithofrac_mechanics_kinematics, only: elastic_stress, gather, gather_previous, &
@@ -159,7 +160,7 @@ contains
       type(failure_type), intent(inout) :: failure
 
       real(wp) :: excess(width), axis(width, 2)
-      integer :: lane
+      integer :: flagged(width), lane, n, first
 
       if (.not. state%touched(chunk)) then
          call check_virgin(stress, rock, excess)
@@ -169,10 +170,14 @@ contains
       call check_softened(stress, state%axis(:, :, chunk), state%ft(:, :, chunk), &
          state%sin_phi(:, chunk), state%c_cos_phi(:, chunk), excess, axis)
       if (maxval(excess) > rock%yield_tolerance) then
+         n = 0
          do lane = 1, chunks%filled(chunk)
-            if (excess(lane) > rock%yield_tolerance) then
-               call return_lane(chunks, chunk, lane, rock, fields, dt, state, stress, failure)
-            end if
+            flagged(n + 1) = lane
+            if (excess(lane) > rock%yield_tolerance) n = n + 1
+         end do
+         do first = 1, n, pack
+            call return_lanes(chunks, chunk, flagged(first:min(first + pack - 1, n)), rock, &
+               fields, dt, state, stress, failure)
          end do
       end if
       where (excess <= rock%yield_tolerance)
@@ -242,11 +247,12 @@ contains
       end do
    end subroutine check_softened
 
-   !> Return one element to its strength and book the energy it dissipates (trapezoid).
-   subroutine return_lane(chunks, chunk, lane, rock, fields, dt, state, stress, failure)
+   !> Return up to `pack` elements to their strength and book the energy that each dissipates
+   !> (trapezoid).
+   subroutine return_lanes(chunks, chunk, lanes, rock, fields, dt, state, stress, failure)
       type(chunks_type), intent(in) :: chunks
       integer, intent(in) :: chunk
-      integer, intent(in) :: lane
+      integer, intent(in) :: lanes(:)
       type(rock_type), intent(in) :: rock
       type(fields_type), intent(in) :: fields
       real(wp), intent(in) :: dt
@@ -254,64 +260,87 @@ contains
       real(wp), intent(inout) :: stress(width, 4)
       type(failure_type), intent(inout) :: failure
 
-      type(point_type) :: point
-      real(wp) :: old(4), trial(4), sigma(4), dep(4), dep_compressive(4), work(2)
-      integer :: active, code
+      type(point_type) :: point(pack)
+      real(wp), dimension(4, pack) :: old, trial, sigma, dep, dep_compressive
+      real(wp) :: strength(2, pack), softening(pack)
+      integer :: active(pack), code(pack), i, lane
 
-      old = previous_stress(chunks, chunk, lane, rock, fields, dt, state)
-      trial = stress(lane, :)
-      point%ep_eff = state%plastic_strain(lane, chunk)
-      point%ft = state%ft(lane, :, chunk)
-      point%opening = state%opening(lane, :, chunk)
-      point%axis = state%axis(lane, :, chunk)
-      point%crack = state%crack(lane, :, chunk)
-      call update_stress(rock, state%softening(lane, chunk), old, trial, point, sigma, dep, &
-         dep_compressive, active, code)
-      if (code /= ok) then
-         if (failure%code == ok) then
-            failure = failure_type(code, chunks%element(lane, chunk), trial)
-         end if
-         return
-      end if
-      stress(lane, :) = sigma
-      state%strain(lane, :, chunk) = state%strain(lane, :, chunk) + dep
-      work(1) = 0.5_wp*dot_product(old + sigma, dep_compressive)
-      work(2) = 0.5_wp*dot_product(old + sigma, dep - dep_compressive)
-      state%dissipated(lane, :, chunk) = state%dissipated(lane, :, chunk) + work
-      if (point%ep_eff > state%plastic_strain(lane, chunk)) then
-         call strength_of_band(rock, state%softening(lane, chunk), point%ep_eff, &
-            state%sin_phi(lane, chunk), state%c_cos_phi(lane, chunk))
-      end if
-      state%plastic_strain(lane, chunk) = point%ep_eff
-      state%ft(lane, :, chunk) = point%ft
-      state%opening(lane, :, chunk) = point%opening
-      state%axis(lane, :, chunk) = point%axis
-      state%crack(lane, :, chunk) = point%crack
-   end subroutine return_lane
+      call previous_stress(chunks, chunk, lanes, rock, fields, dt, state, old)
+      associate (ep_eff => state%plastic_strain(:, chunk), ft => state%ft(:, :, chunk), &
+            opening => state%opening(:, :, chunk), axis => state%axis(:, :, chunk), &
+            crack => state%crack(:, :, chunk), dissipated => state%dissipated(:, :, chunk), &
+            strain => state%strain(:, :, chunk))
+         do i = 1, size(lanes)
+            lane = lanes(i)
+            trial(:, i) = stress(lane, :)
+            softening(i) = state%softening(lane, chunk)
+            point(i) = point_type(ep_eff(lane), ft(lane, :), opening(lane, :), axis(lane, :), &
+               crack(lane, :))
+         end do
+         call update_pack(rock, size(lanes), softening, old, trial, point, sigma, dep, &
+            dep_compressive, strength, active, code)
+         do i = 1, size(lanes)
+            lane = lanes(i)
+            if (code(i) /= ok) then
+               if (failure%code == ok) then
+                  failure = failure_type(code(i), chunks%element(lane, chunk), trial(:, i))
+               end if
+               cycle
+            end if
+            stress(lane, :) = sigma(:, i)
+            strain(lane, :) = strain(lane, :) + dep(:, i)
+            dissipated(lane, 1) = dissipated(lane, 1) &
+               + 0.5_wp*dot_product(old(:, i) + sigma(:, i), dep_compressive(:, i))
+            dissipated(lane, 2) = dissipated(lane, 2) &
+               + 0.5_wp*dot_product(old(:, i) + sigma(:, i), dep(:, i) - dep_compressive(:, i))
+            if (point(i)%ep_eff > ep_eff(lane)) then
+               state%sin_phi(lane, chunk) = strength(1, i)
+               state%c_cos_phi(lane, chunk) = strength(2, i)
+            end if
+            ep_eff(lane) = point(i)%ep_eff
+            ft(lane, :) = point(i)%ft
+            opening(lane, :) = point(i)%opening
+            axis(lane, :) = point(i)%axis
+            crack(lane, :) = point(i)%crack
+         end do
+      end associate
+   end subroutine return_lanes
 
-   !> Stress at the start of the step [Pa]: recomputed, because nearly no element needs it.
-   function previous_stress(chunks, chunk, lane, rock, fields, dt, state) result(stress)
+   !> Stress of some elements at the start of the step [Pa]: recomputed, because nearly no element
+   !> needs it.
+   subroutine previous_stress(chunks, chunk, lanes, rock, fields, dt, state, old)
       type(chunks_type), intent(in) :: chunks
       integer, intent(in) :: chunk
-      integer, intent(in) :: lane
+      integer, intent(in) :: lanes(:)             !! up to `pack` of them
       type(rock_type), intent(in) :: rock
       type(fields_type), intent(in) :: fields
       real(wp), intent(in) :: dt
       type(inelastic_type), intent(in) :: state
-      real(wp) :: stress(4)
+      real(wp), intent(out) :: old(4, pack)
 
-      real(wp) :: du(4), gradient(4), inelastic(4), strain(4), rotation(3)
-      integer :: corner(3)
+      integer :: corner(3), i, lane, n
 
-      corner = chunks%node(lane, :, chunk)
-      gradient = chunks%gradient(lane, :, chunk)
-      inelastic = state%strain(lane, :, chunk)
-      call gather_previous(corner, fields%u, fields%v, dt, du)
-      strain(3) = 0.0_wp
-      if (chunks%axisymmetric) strain(3) = chunks%hoop(lane, chunk) &
-         *sum(fields%u(1, corner) - dt*fields%v(1, corner))
-      call strains(1, gradient, du, strain, rotation)
-      call elastic_stress(1, rock%lame, rock%shear, strain, inelastic, stress)
-   end function previous_stress
+      n = padded(size(lanes))
+      block
+         real(wp), dimension(n, 4) :: du, gradient, inelastic, strain, stress
+         real(wp) :: rotation(n, 3)
+
+         do i = 1, n
+            lane = lanes(min(i, size(lanes)))
+            corner = chunks%node(lane, :, chunk)
+            call gather_previous(corner, fields%u, fields%v, dt, du(i, :))
+            gradient(i, :) = chunks%gradient(lane, :, chunk)
+            inelastic(i, :) = state%strain(lane, :, chunk)
+            strain(i, 3) = 0.0_wp
+            if (chunks%axisymmetric) strain(i, 3) = chunks%hoop(lane, chunk) &
+               *sum(fields%u(1, corner) - dt*fields%v(1, corner))
+         end do
+         call strains(n, gradient, du, strain, rotation)
+         call elastic_stress(n, rock%lame, rock%shear, strain, inelastic, stress)
+         do i = 1, size(lanes)
+            old(:, i) = stress(i, :)
+         end do
+      end block
+   end subroutine previous_stress
 
 end module lithofrac_mechanics_internal_force

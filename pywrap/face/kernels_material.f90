@@ -6,9 +6,10 @@ module kernels_material
    use lithofrac_base_status, only: ok, status_type
    use lithofrac_material_crack_axes, only: follow_axes, turn_crack
    use lithofrac_material_mohr_coulomb, only: strength_coefficients
+   use lithofrac_material_pyramid_return, only: pack, pyramid_return_type, return_to_pyramid
    use lithofrac_material_return_map, only: return_to_surface
    use lithofrac_material_rock, only: new_rock, rock_type
-   use lithofrac_material_stress_update, only: point_type, update_stress
+   use lithofrac_material_stress_update, only: point_type, update_pack
    use lithofrac_material_table, only: new_table, table_type, value_and_slope
    use lithofrac_material_tension_planes, only: band_width, band_width_limit, &
       softened_strength, softening_modulus
@@ -231,7 +232,8 @@ contains
       character(len=256), intent(out) :: message
 
       type(rock_type) :: rock
-      integer :: i
+      type(pyramid_return_type) :: quick
+      integer :: first, i, lane, of_lane(pack)
 
       ep_eff = ep_old
       dep = 0.0_c_double
@@ -240,9 +242,22 @@ contains
       codes = ok
       call make_rock(constants, table, options, rock, code, message)
       if (code /= ok) return
-      do i = 1, n
-         call return_to_surface(rock, softening(i), trials(:, i), ft(:, i), ep_eff(i), dep(:, i), &
-            dep_compressive(:, i), active(i), codes(i))
+      do first = 1, n, pack
+         of_lane = min([(first + lane - 1, lane=1, pack)], n)
+         call return_to_pyramid(rock, pack, softening(of_lane), transpose(trials(:, of_lane)), &
+            transpose(ft(:, of_lane)), ep_old(of_lane), quick)
+         do lane = 1, min(pack, n - first + 1)
+            i = first + lane - 1
+            if (.not. quick%done(lane)) then
+               call return_to_surface(rock, softening(i), trials(:, i), ft(:, i), ep_eff(i), &
+                  dep(:, i), dep_compressive(:, i), active(i), codes(i))
+            else if (quick%active(lane) /= 0) then
+               ep_eff(i) = quick%e(lane)
+               dep(:, i) = quick%dep(lane, :)
+               dep_compressive(:, i) = dep(:, i)
+               active(i) = quick%active(lane)
+            end if
+         end do
       end do
    end subroutine return_principal
 
@@ -279,25 +294,41 @@ contains
       character(len=256), intent(out) :: message
 
       type(rock_type) :: rock
-      type(point_type) :: point
-      integer :: i
-      real(c_double) :: trial(4), volume
+      type(point_type) :: point(pack)
+      integer :: active_lane(pack), code_lane(pack), count, first, i, lane
+      real(c_double) :: compressive(4, pack), flow(4, pack), now(4, pack), old(4, pack)
+      real(c_double) :: slope(pack), strength(2, pack), trial(4, pack)
 
       call make_rock(constants, table, options, rock, code, message)
       if (code /= ok) return
-      do i = 1, n
-         point = point_type(ep_old(i), ft_old(:, i), opening_old(:, i), axis_old(:, i), &
-            crack_old(:, i))
-         volume = rock%lame*(strain(1, i) + strain(2, i) + strain(3, i))
-         trial = stress_old(:, i) + rock%shear*[2.0_c_double*strain(:3, i), strain(4, i)]
-         trial(:3) = trial(:3) + volume
-         call update_stress(rock, softening(i), stress_old(:, i), trial, point, stress(:, i), &
-            dep(:, i), dep_compressive(:, i), active(i), codes(i))
-         ep_eff(i) = point%ep_eff
-         ft(:, i) = point%ft
-         opening(:, i) = point%opening
-         axis(:, i) = point%axis
-         crack(:, i) = point%crack
+      do first = 1, n, pack
+         count = min(pack, n - first + 1)
+         do lane = 1, count
+            i = first + lane - 1
+            point(lane) = point_type(ep_old(i), ft_old(:, i), opening_old(:, i), axis_old(:, i), &
+               crack_old(:, i))
+            slope(lane) = softening(i)
+            old(:, lane) = stress_old(:, i)
+            trial(:, lane) = stress_old(:, i) &
+               + rock%shear*[2.0_c_double*strain(:3, i), strain(4, i)]
+            trial(:3, lane) = trial(:3, lane) &
+               + rock%lame*(strain(1, i) + strain(2, i) + strain(3, i))
+         end do
+         call update_pack(rock, count, slope, old, trial, point, now, flow, compressive, strength, &
+            active_lane, code_lane)
+         do lane = 1, count
+            i = first + lane - 1
+            stress(:, i) = now(:, lane)
+            dep(:, i) = flow(:, lane)
+            dep_compressive(:, i) = compressive(:, lane)
+            active(i) = active_lane(lane)
+            codes(i) = code_lane(lane)
+            ep_eff(i) = point(lane)%ep_eff
+            ft(:, i) = point(lane)%ft
+            opening(:, i) = point(lane)%opening
+            axis(:, i) = point(lane)%axis
+            crack(:, i) = point(lane)%crack
+         end do
       end do
    end subroutine point_step
 

@@ -1,8 +1,7 @@
 """Runtime guards: what a run says while something goes wrong, and when it stops.
 
-Thresholds stand in `Problem.guards`. A look is taken at the first record of every `LOOK_STEPS`
-steps, at the start and at the end. Which records those are follows from the steps alone, and a look
-changes no bit of the run.
+Thresholds stand in `Problem.guards`. A look is taken every `LOOK_STEPS` steps, at the start and at
+the end, whether there is a record or not; it changes no bit of the run.
 
 The core itself ends a run that cannot go on: no return of a trial stress, parts that pass each
 other too fast, a velocity that is not finite, an element that has turned inside out.
@@ -73,16 +72,6 @@ class Reading(NamedTuple):
     element: int = -1
 
 
-def _unexplained(ledger: Energy) -> float:
-    """Relative residual of the ledger, and what the time step gained or lost as elements turned.
-
-    The second has an entry of its own because it is known, but no rock gives or takes it.
-    """
-    scale = max(ledger.internal, abs(ledger.external), ledger.kinetic)
-    turning = abs(ledger.turning) / scale if scale > 0.0 else 0.0
-    return abs(ledger.residual) + turning
-
-
 class Watch:
     """Holds a run against its guards; goes into the checkpoint and comes back from it.
 
@@ -97,15 +86,16 @@ class Watch:
         limits = vars(run.problem.guards)
         self.stops = {guard.name: limits[f"{guard.name}_stop"] for guard in GUARDS}
         self.warnings = {guard.name: limits[f"{guard.name}_warning"] for guard in GUARDS}
+        self.scale = 0.0  # largest energy so far [J]
         self.first: dict[str, str] = {}  # guard -> sentence of its first warning
         self.worst: dict[str, float] = {}  # and the worst value since
 
-    def look(self, step_before: int) -> list[str]:
-        """Sentences of the guards that warn for the first time.
+    def steps_ahead(self) -> int:
+        """Steps from here to the next look."""
+        return min(LOOK_STEPS - self.run.step % LOOK_STEPS, self.steps - self.run.step)
 
-        Parameters
-        ----------
-        step_before : step of the record before, -1 at the first
+    def look(self) -> list[str]:
+        """Sentences of the guards that warn for the first time; none where no look is due.
 
         Raises
         ------
@@ -113,9 +103,9 @@ class Watch:
             At the first guard that stops the run.
         """
         step = self.run.step
-        if step // LOOK_STEPS == step_before // LOOK_STEPS and step < self.steps:
+        if step % LOOK_STEPS and step < self.steps:
             return []
-        found = self._walk() | {"energy_residual": Reading(_unexplained(self.run.energy()))}
+        found = self._walk() | {"energy_residual": Reading(self._unexplained(self.run.energy()))}
         if self.run.problem.contact is not None:
             unconverged = self.run.contact_statistics().unconverged_steps
             found["unconverged"] = Reading(unconverged / self.steps)
@@ -137,6 +127,7 @@ class Watch:
         """What a checkpoint keeps."""
         names = list(self.first)
         return {
+            "guards_scale": np.array(self.scale),
             "guards": np.array(names, dtype=str),
             "guards_first": np.array([self.first[name] for name in names], dtype=str),
             "guards_worst": np.array([self.worst[name] for name in names], dtype=float),
@@ -144,9 +135,21 @@ class Watch:
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
         """Take back what `arrays` gave."""
+        self.scale = float(arrays["guards_scale"])
         names = [str(name) for name in arrays["guards"]]
         self.first = dict(zip(names, map(str, arrays["guards_first"]), strict=True))
         self.worst = dict(zip(names, map(float, arrays["guards_worst"]), strict=True))
+
+    def _unexplained(self, ledger: Energy) -> float:
+        """Residual of the ledger, and what the time step gained or lost as elements turned; both
+        over the largest energy so far.
+
+        The second has an entry of its own because it is known, but no rock gives or takes it.
+        """
+        energies = (ledger.initial, ledger.internal, abs(ledger.external), ledger.kinetic)
+        self.scale = max(self.scale, *energies)
+        turning = abs(ledger.turning) / self.scale if self.scale > 0.0 else 0.0
+        return abs(ledger.residual) + turning
 
     def _walk(self) -> dict[str, Reading]:
         """What takes a walk over the mesh; a value that is not finite ends the run at once."""

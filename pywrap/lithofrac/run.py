@@ -23,7 +23,7 @@ from lithofrac.analysis.frames import MM, Frame
 from lithofrac.analysis.run_numbers import finite, peak, ratio, residual
 from lithofrac.config.cost import ELASTIC_RATE, YIELDING_RATE
 from lithofrac.core import Run
-from lithofrac.errors import CoreError
+from lithofrac.errors import CoreError, GuardError
 from lithofrac.guards import Watch
 from lithofrac.problem import Problem
 from lithofrac.results import checkpoint
@@ -215,17 +215,16 @@ class _Session:
             with _signals_later() as asked_to_stop:
                 run.advance(0, self.threads)
                 self._record()
-                self._look(step_before=-1)
+                self._look()
             if asked_to_stop:
                 raise KeyboardInterrupt
             self.save_checkpoint()
         saved = time.perf_counter()
         while run.step < self.steps:
             with _signals_later() as asked_to_stop:
-                step = run.step
-                run.advance(min(self.every, self.steps - step), self.threads)
+                self._advance(min(run.step + self.every, self.steps))
                 self._record()
-                self._look(step_before=step)
+                self._look()
             if asked_to_stop:
                 raise KeyboardInterrupt
             if progress is not None:
@@ -258,9 +257,22 @@ class _Session:
             )  # fmt: skip
         self.frames.append((moment, *names))
 
-    def _look(self, step_before: int) -> None:
+    def _advance(self, step: int) -> None:
+        """Step the run to `step`, with the looks that are due before it."""
+        while self.run.step < step:
+            self.run.advance(min(self.watch.steps_ahead(), step - self.run.step), self.threads)
+            if self.run.step < step:
+                self._look()
+
+    def _look(self) -> None:
         """Hold the run against its guards, before its state becomes a checkpoint."""
-        for said in self.watch.look(step_before):
+        try:
+            sentences = self.watch.look()
+        except GuardError:
+            if self.recorder.history[-1][0] < self.run.step:  # stopped between two records
+                self.recorder.record()
+            raise
+        for said in sentences:
             if self.warn is not None:
                 self.warn(said)
 

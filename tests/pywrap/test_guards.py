@@ -232,7 +232,8 @@ def test_the_command_line_warns_and_stops_with_3(tmp_path, capsys):
     assert not (tmp_path / "a" / checkpoint.FAILED).exists()
 
 
-def test_the_mesh_is_walked_over_at_most_every_two_hundred_steps(tmp_path):
+@pytest.mark.parametrize("records", [2, 7, 1000])
+def test_a_look_is_taken_every_two_hundred_steps_whatever_is_recorded(tmp_path, records):
     looks = []
     watch = Run.watch
 
@@ -240,9 +241,33 @@ def test_the_mesh_is_walked_over_at_most_every_two_hundred_steps(tmp_path):
         looks.append(self.step)
         return watch(self)
 
+    mesh = rectangle(2, 2, 0.01, 0.01)
+    still = problem(mesh, velocity_loads=(hold("bottom", mesh.nodes_of("bottom"), 1),), fields=0)
+    still = replace(still, end_time=650.5 * Run(replace(still, end_time=1.0)).dt, records=records)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Run, "watch", counted)
-        summary = simulate(replace(crushed(), records=1000), tmp_path)
-    assert looks[0] == 0
-    assert looks[-1] == summary["steps"]
-    assert len(looks) <= 2 + summary["steps"] // LOOK_STEPS
+        summary = simulate(still, tmp_path)
+    assert summary["steps"] == 651
+    assert looks == [0, LOOK_STEPS, 2 * LOOK_STEPS, 3 * LOOK_STEPS, 651]
+    history = pd.read_parquet(tmp_path / "history.parquet")
+    every = max(1, 651 // records)
+    assert list(history["step"]) == sorted({*range(0, 651, every), 651})
+
+
+def test_a_stop_between_two_records_is_recorded(tmp_path):
+    """The block gathers speed over 700 steps and two records, and is stopped at step 400."""
+    free = replace(thrown(), guards=Guards(**NEVER))
+    step = Run(free).dt
+    slow = replace(
+        free,
+        velocity_loads=tuple(
+            replace(load, ramp=Ramp(0.0, 600 * step)) for load in free.velocity_loads
+        ),
+        end_time=700 * step,
+        records=2,
+        guards=Guards(**(NEVER | {"speed_warning": 0.1, "speed_stop": 0.2})),
+    )
+    with pytest.raises(GuardError, match=r"step 400, "):
+        simulate(slow, tmp_path)
+    history = pd.read_parquet(tmp_path / "history.parquet")
+    assert list(history["step"]) == [0, 350, 400]

@@ -18,7 +18,7 @@ from lithofrac.errors import CheckpointError
 from lithofrac.problem import Problem
 from lithofrac.results.files import write_whole
 
-FORMAT = 4  # raise it whenever the meaning of a stored number changes
+FORMAT = 5  # raise it whenever the meaning of a stored number changes
 NAME, PREVIOUS = "checkpoint.npz", "checkpoint_previous.npz"
 FAILED = "checkpoint_failed.npz"  # to look at; nothing resumes from it
 # Beside the compiled core, what decides the numbers of a run once there is a problem.

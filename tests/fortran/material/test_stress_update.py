@@ -281,6 +281,30 @@ def test_other_readings_of_the_paper_are_consistent(name, options, n_random):
         check_idempotent(batch, results)
 
 
+@pytest.mark.parametrize("name", ROCKS)
+def test_a_point_has_the_same_bits_in_any_company(name):
+    """Points are returned side by side, in packs of up to 32."""
+    batch = Batch(packed(name), 500, seed=11)
+    results = batch.step()
+    for chosen in (
+        np.random.default_rng(3).permutation(batch.n),
+        *np.array_split(np.arange(batch.n), 61),
+    ):
+        some = kernels.point_step(
+            batch.rock,
+            batch.softening[chosen],
+            batch.strain[chosen],
+            batch.stress[chosen],
+            batch.e[chosen],
+            batch.ft[chosen],
+            batch.opening[chosen],
+            batch.axis[chosen],
+            batch.crack[chosen],
+        )
+        for one, other in zip(results, some, strict=True):
+            np.testing.assert_array_equal(one[chosen], other)
+
+
 def test_an_elastic_step_turns_the_axes_and_nothing_else():
     rock = packed("sandstone")
     state = [np.zeros((1, 4)), np.zeros(1), np.array([[1e6, 2e6, 3e6]]), np.zeros((1, 3)),
