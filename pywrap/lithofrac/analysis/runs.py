@@ -85,7 +85,7 @@ class Run:
     @cached_property
     def probes(self) -> pd.DataFrame:
         """`probes.parquet`, a row a probe and record."""
-        return read_table(self.folder / "probes.parquet", "element", "time_s", "plastic_strain")
+        return read_table(self.folder / "probes.parquet", "time_s", "plastic_strain")
 
     @property
     def discrete(self) -> bool:

@@ -55,7 +55,7 @@ def test_a_table_that_is_none(make_cracked_run, said, tmp_path, kind, name, cont
         ("energy", "energy.parquet", "kinetic_J"),
         ("stress_strain", "history.parquet", "axial_strain"),
         ("events", "cracks.parquet", "x1_mm"),
-        ("gauges", "probes.parquet", "element"),
+        ("gauges", "probes.parquet", "plastic_strain"),
     ],
 )
 def test_a_table_of_something_else(make_cracked_run, said, tmp_path, kind, name, column):
