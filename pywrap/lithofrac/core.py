@@ -9,6 +9,7 @@ import numpy as np
 
 # Waiting threads must sleep: spinning ones cost a factor eight on a shared machine.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+os.environ.setdefault("GOMP_SPINCOUNT", "3000")  # some 40 us: a step waits less, then sleep
 
 from lithofrac import _core
 from lithofrac.errors import CoreError, checked

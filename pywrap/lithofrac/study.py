@@ -19,6 +19,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from lithofrac.analysis.reading import read_summary
 from lithofrac.analysis.study import check_quantities
 from lithofrac.config.errors import ConfigError
 from lithofrac.config.material import PACKAGED
@@ -187,7 +188,7 @@ def _alone_in(out: Path) -> Iterator[None]:
 
 def _forget_unfinished(summary: Path) -> None:
     """Remove the summary of a run that was stopped, which Snakemake would take for a result."""
-    if summary.exists() and json.loads(summary.read_text())["status"] != "completed":
+    if summary.exists() and read_summary(summary)["status"] != "completed":
         summary.unlink()
 
 

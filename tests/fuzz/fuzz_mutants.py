@@ -302,6 +302,11 @@ def _change(values: dict, choose: random.Random) -> None:
         holder[key] = other[its_key] if not isinstance(other[its_key], (dict, list)) else 1
     elif change == 10 and key == "kind":
         holder[key] = choose.choice(KINDS)
+    elif change == 11:  # all numbers of a section, or of a list
+        for place, number in list(
+            holder.items() if isinstance(holder, dict) else enumerate(holder)
+        ):
+            holder[place] = 0 * number if _is_number(number) else number
     elif isinstance(value, bool):
         holder[key] = not value
     else:

@@ -2,7 +2,7 @@
 
 import json
 import re
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import meshio
 import numpy as np
@@ -13,9 +13,9 @@ from models import Elastic, hold, problem, rectangle
 
 from lithofrac.cli import main
 from lithofrac.config import Material
-from lithofrac.core import Run
+from lithofrac.core import Energy, Run
 from lithofrac.errors import CoreError, GuardError
-from lithofrac.guards import GUARDS, LOOK_STEPS
+from lithofrac.guards import GUARDS, LOOK_STEPS, Watch
 from lithofrac.problem import Contact, Fracture, Guards, PressureLoad, Ramp
 from lithofrac.results import checkpoint
 from lithofrac.run import simulate
@@ -83,6 +83,23 @@ TRIGGERS = {  # problem, place, limits of a warning, limits of a stop; without: 
         rubble, FASTEST, {"energy_residual_warning": 1e-11}, {"energy_residual_stop": 1e-10},
     ),
 }  # fmt: skip
+
+
+@pytest.mark.parametrize("guard", GUARDS, ids=lambda guard: guard.name)
+def test_a_value_is_beyond_a_limit_on_the_bad_side_and_where_it_is_no_number(guard):
+    worse = guard.worse(0.1, 0.2)
+    assert guard.is_bad(worse, 0.15)
+    assert not guard.is_bad(0.3 - worse, 0.15)
+    assert guard.is_bad(float("nan"), 0.15)
+    assert not guard.is_bad(0.15, 0.15)
+
+
+def test_energy_without_cause_is_held_against_the_largest_so_far():
+    """Where a body has come to rest, or let go, what is left is no measure."""
+    watch = Watch(Run(thrown()), 10)
+    none = dict.fromkeys((field.name for field in fields(Energy)), 0.0)
+    assert watch._unexplained(Energy(**none | {"elastic": 100.0})) == 0.0
+    assert watch._unexplained(Energy(**none | {"elastic": 1.0, "turning": 1.0})) == 0.01
 
 
 def test_every_guard_has_a_trigger():

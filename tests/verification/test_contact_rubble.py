@@ -21,7 +21,7 @@ from lithofrac.problem import Damping, Ramp
 pytestmark = pytest.mark.verification
 
 
-@pytest.mark.parametrize("factor", [0.90, 0.99])
+@pytest.mark.parametrize("factor", [0.90, 0.99, 1.00])
 def test_contact_leaves_the_step_of_the_free_elements(factor):
     """With every edge cut the mesh has exactly the limit of its elements."""
     run = crushed_rubble(factor, speed=5.0)

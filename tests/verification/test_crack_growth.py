@@ -11,7 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.linalg import spsolve
 
 from lithofrac.core import Run
-from lithofrac.problem import Contact, Damping, Fracture, Ramp
+from lithofrac.problem import Contact, Damping, Fracture, PressureLoad, Ramp
 
 pytestmark = pytest.mark.verification
 SIZE = 1e-3  # of an element [m]
@@ -19,8 +19,13 @@ SIZE = 1e-3  # of an element [m]
 
 # ---- a double cantilever beam: the load of linear elastic fracture mechanics
 
-LENGTH, ARM = 70, 12  # elements along the beam and across one arm; the crack runs between them
-START = 24  # elements of the cut
+LENGTH, ARM = 140, 24  # elements along the beam and across one arm; the crack runs between them
+START = 48  # elements of the cut
+STRENGTH, ENERGY = 8e6, 20.0  # of the row [Pa, J/m2]: E Gf / ft^2 is nine elements
+# Pressure on both ends [Pa]. Ahead of a crack the stress along it is that across it plus the
+# T-stress, which is above zero between two arms and below zero once their ends are pressed.
+FREE, PRESSED = 0.0, STRENGTH
+GROWING = 1e-4  # opening [m] from which on the crack has left its cut by twelve elements
 
 
 def beam(cut, weak=True):
@@ -72,68 +77,108 @@ def compliance(cut, material):
 
 def griffith(material, openings):
     """Force [N/m] at some openings [m] of a beam whose crack grows at G = Gf: P^2/2 dC/da = Gf."""
-    cuts = np.arange(START - 4, LENGTH - 14, 4)
+    cuts = np.arange(START - 4, LENGTH - 28, 4)
     fit = np.polynomial.Polynomial.fit(cuts * SIZE, [compliance(cut, material) for cut in cuts], 4)
     a = np.linspace(cuts[0], cuts[-1], 400) * SIZE
     force = np.sqrt(2 * material.fracture_energy / fit.deriv()(a))
     return np.interp(openings, force * fit(a), force)
 
 
+def end_edges(mesh, column):
+    """Edges of the end at a column of nodes, material on the left, (k, 2)."""
+    edges = np.concatenate([mesh.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+    return edges[(abs(mesh.nodes[edges, 0] - column * SIZE) < 0.1 * SIZE).all(axis=1)]
+
+
 @pytest.fixture(scope="module")
-def parted_beam():
-    """A beam pulled open: its run, the openings [m], and the forces [N/m] over Griffith's."""
-    material = brittle(fracture_energy=5.0, tensile_strength=8.0)
+def parted_beam(request):
+    """A beam pulled open: its run, the openings [m], and the forces [N/m] over Griffith's.
+
+    Its damping is light: the drag on the long arms takes 10 % of the load at the 0.3 of a specimen,
+    4 % at 0.05.
+    """
+    material = brittle(fracture_energy=ENERGY, tensile_strength=STRENGTH / 1e6)
     arms = material.model_copy(update={"elastic": True})
     mesh = beam(START)
     low, high = pulled_nodes(mesh)
     right = np.flatnonzero(mesh.nodes[:, 0] > (LENGTH - 0.5) * SIZE)
-    ramp = Ramp(0.0, 2e-4)
+    pressing, pulling = Ramp(0.0, 5e-4), Ramp(5e-4, 5e-4)
     run = Run(
         problem(
             mesh,
             materials=(arms, material),
             velocity_loads=(
-                hold("low", [low], 1, -8e-3, ramp=ramp),
-                hold("high", [high], 1, 8e-3, ramp=ramp),
+                hold("low", [low], 1, -16e-3, ramp=pulling),
+                hold("high", [high], 1, 16e-3, ramp=pulling),
                 hold("end", right[:1], 0),
+            ),
+            pressure_loads=(
+                PressureLoad("left", end_edges(mesh, 0), request.param, ramp=pressing),
+                PressureLoad("right", end_edges(mesh, LENGTH), request.param, ramp=pressing),
             ),
             contact=Contact(),
             fracture=Fracture(),
-            damping=Damping(0.3),
+            damping=Damping(0.02),
         )
     )
     opening, force = [], []
-    while run.step * run.dt < 4e-3:
+    while run.step * run.dt < 6.5e-3:
         run.advance(100)
-        (down, from_low), (up, from_high), _ = run.loads()
+        (down, from_low), (up, from_high) = run.loads()[:2]
         opening.append(from_high - from_low)
         force.append(0.5 * (up - down))
-    return run, np.array(opening), np.array(force) / griffith(material, opening)
+    opening = np.array(opening)
+    return run, opening, np.array(force) / griffith(material, opening)
+
+
+def opened_twice(run):
+    """Share of the elements of the row, behind the tip and ahead of the cut, of which both planes
+    in the plane of the beam have opened."""
+    mesh = run.problem.mesh
+    row = np.flatnonzero(mesh.body == 1)
+    opened = run.elements(row).tensile_strength[:, :2] < 0.5 * STRENGTH
+    ahead = mesh.centroids()[row, 0] > (START + 1) * SIZE
+    return opened[ahead].all(axis=1).sum() / opened[ahead].any(axis=1).sum()
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("parted_beam", [FREE, PRESSED], indirect=True)
 def test_the_crack_of_a_double_cantilever_beam_stays_in_its_row(parted_beam):
     run, *_ = parted_beam
     cracks = run.cracks() / SIZE
     print(f"crack to {cracks[:, [2, 4]].max():.0f} of {LENGTH} elements from {START}")
-    assert cracks[:, [2, 4]].max() > START + 4
+    assert cracks[:, [2, 4]].max() > START + 12
     assert cracks[:, [3, 5]].min() >= ARM - 1e-9
     assert cracks[:, [3, 5]].max() <= ARM + 1 + 1e-9
     assert abs(run.energy().residual) < 1e-6
 
 
+def mean_over_griffith(run, opening, ratio):
+    """Mean force while the crack grows, over Griffith's [-]."""
+    growing = ratio[opening > GROWING]
+    print(f"over Griffith's: mean {growing.mean():.3f}, {growing.min():.3f} to {growing.max():.3f}")
+    print(f"both planes open in {100 * opened_twice(run):.0f} % of the row behind the tip")
+    return growing.mean()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("parted_beam", [PRESSED], indirect=True)
+def test_the_load_of_a_beam_that_is_pressed_along_its_arms_is_that_of_griffith(parted_beam):
+    """Within 5 % while the crack grows, and each element of the row opens on one plane."""
+    assert mean_over_griffith(*parted_beam) == pytest.approx(1.0, abs=0.05)
+    assert opened_twice(parted_beam[0]) == 0.0
+
+
 @pytest.mark.slow
 @pytest.mark.xfail(
     strict=True,
-    reason="as the arms turn, principal axes turn in the row and both planes of its elements open: "
-    "a crack between two arms takes two to four times Gf",
+    reason="without pressure the stress along the row is above that across it: both planes of its "
+    "elements open, and a crack takes about four times Gf",
 )
+@pytest.mark.parametrize("parted_beam", [FREE], indirect=True)
 def test_the_load_of_a_double_cantilever_beam_is_that_of_griffith(parted_beam):
     """Within 5 % while the crack grows."""
-    _, opening, ratio = parted_beam
-    growing = ratio[opening > 2.5e-5]
-    print(f"over Griffith's: mean {growing.mean():.3f}, {growing.min():.3f} to {growing.max():.3f}")
-    assert growing.mean() == pytest.approx(1.0, abs=0.05)
+    assert mean_over_griffith(*parted_beam) == pytest.approx(1.0, abs=0.05)
 
 
 # ---- an inclined cut in compression

@@ -51,6 +51,7 @@ def test_a_crack_along_an_aligned_row_takes_its_fracture_energy(columns):
     print(f"{spent:.5f} of Gf times the area, peak {peak / WIDTH / material.tensile_strength:.4f}")
     assert energy_factor(mesh) == pytest.approx(1.0, rel=1e-12)
     assert spent == pytest.approx(1.0, rel=0.02)
+    assert run.energy().external == pytest.approx(material.fracture_energy * WIDTH, rel=0.02)
     # the reaction swings a little about the static force
     assert peak == pytest.approx(WEAK * material.tensile_strength * WIDTH, rel=0.02)
     assert abs(last) < 0.01 * peak

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from lithofrac.analysis.reading import read_table
 from lithofrac.analysis.strength import Peak, first_peak
 from lithofrac.config.material import Material
 
@@ -37,7 +38,7 @@ class Bench:
     @cached_property
     def curve(self) -> pd.DataFrame:
         """The curve, columns as `point.drive` gives them."""
-        return pd.read_parquet(self.path)
+        return read_table(self.path, "axial_strain", "axial_stress_MPa")
 
     @cached_property
     def material(self) -> Material:

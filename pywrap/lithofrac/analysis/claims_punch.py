@@ -67,7 +67,7 @@ def _initiation(source: Source) -> dict[str, Value]:
 
 def _first_at(run: Run, probe: str) -> float:
     """Punch stress at the first record with damage at a probe; inf without any [MPa]."""
-    table = pd.read_parquet(run.folder / "probes.parquet")
+    table = run.probes
     table = table[(table["probe"] == probe) & (table["time_s"] >= run.history["time_s"].iloc[0])]
     strengths = table[[f"tensile_strength_{i}_MPa" for i in (1, 2, 3)]].min(axis=1)
     hit = table[(table["plastic_strain"] > 0.0) | (strengths < strengths.iloc[0])]

@@ -7,6 +7,9 @@ from pathlib import Path
 import meshio
 import numpy as np
 
+from lithofrac.config.errors import one_line
+from lithofrac.errors import FileError
+
 MM = 1e3  # millimetres in a metre
 
 
@@ -34,16 +37,22 @@ class Frame:
     @classmethod
     def load(cls, path: Path, time_s: float) -> "Frame":
         """Read one `fields/frame_*.vtu`."""
-        grid = meshio.read(path)
-        cells = {name: values[0] for name, values in grid.cell_data.items()}
-        return cls(
-            time_s,
-            MM * grid.points[:, :2],
-            MM * grid.point_data["displacement_m"][:, :2],
-            grid.cells[0].data,
-            np.ravel(cells["body"]),
-            np.ravel(cells["plastic_strain"]),
-        )
+        if not path.is_file():
+            raise FileNotFoundError(2, "No such file or directory", str(path))
+        try:
+            grid = meshio.vtu.read(path)
+            cells = {name: values[0] for name, values in grid.cell_data.items()}
+            return cls(
+                time_s,
+                MM * grid.points[:, :2],
+                MM * grid.point_data["displacement_m"][:, :2],
+                grid.cells[0].data,
+                np.ravel(cells["body"]),
+                np.ravel(cells["plastic_strain"]),
+            )
+        except Exception:  # meshio has dozens, some of them without words
+            size = path.stat().st_size
+            raise FileError(f"{path}: {size} bytes that are no fields of a run in VTU") from None
 
     def moved(self, magnification: float = 1.0) -> np.ndarray:
         """Deformed positions, displacements magnified, (n, 2) [mm]."""
@@ -90,13 +99,22 @@ def frame_times(folder: Path) -> list[tuple[float, Path]]:
     ------
     FileNotFoundError
         When the run has written no fields.
+    FileError
+        When the list of them is damaged, or empty.
     """
-    series = ElementTree.parse(folder / "fields.pvd").getroot().iter("DataSet")
-    return sorted(
-        (float(entry.get("timestep")), folder / entry.get("file"))
-        for entry in series
-        if entry.get("part") == "0"  # the others are lines of cracks
-    )
+    path = folder / "fields.pvd"
+    try:
+        series = ElementTree.parse(path).getroot().iter("DataSet")
+        found = sorted(
+            (float(entry.attrib["timestep"]), folder / entry.attrib["file"])
+            for entry in series
+            if entry.get("part") == "0"  # the others are lines of cracks
+        )
+    except (ElementTree.ParseError, ValueError, KeyError) as error:
+        raise FileError(f"{path}: expected a list of fields ({one_line(error, 200)})") from None
+    if not found:
+        raise FileError(f"{path}: names no fields, expected those of a run")
+    return found
 
 
 def last_frame(folder: Path) -> Frame:

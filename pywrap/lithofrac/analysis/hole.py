@@ -96,7 +96,7 @@ class HoleRun:
     @cached_property
     def gauges(self) -> dict[str, Gauge]:
         """All probes by name."""
-        table = pd.read_parquet(self.run.folder / "probes.parquet")
+        table = self.run.probes
         table = table[table["time_s"] >= self.times[0]]
         virgin = self.run.case["material"].get("tensile_strength_MPa")
         return {str(name): _gauge(str(name), own, virgin) for name, own in table.groupby("probe")}

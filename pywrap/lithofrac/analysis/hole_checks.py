@@ -98,7 +98,7 @@ def elastic_bound(run: HoleRun, zone: str) -> float:
     The elastic solution of the mesh of a run is the run itself before any gauge yields, here its
     last record before that. NaN where the stress of all gauges is of the wrong sign.
     """
-    probes = pd.read_parquet(run.run.folder / "probes.parquet")
+    probes = run.run.probes
     soft = probes["plastic_strain"] > 0.0
     for i in (1, 2, 3):
         strength = probes[f"tensile_strength_{i}_MPa"]

@@ -1,13 +1,11 @@
 """Summaries of runs side by side, as plain text that fits a terminal."""
 
-import json
 import textwrap
 from collections.abc import Callable
 from itertools import zip_longest
 from pathlib import Path
 
 from lithofrac.analysis.runs import find_runs
-from lithofrac.data import DataError
 
 WIDTH = 80  # characters of a line
 LABEL, GAP, MOST = 31, 1, 3  # characters of a label, between columns; runs side by side
@@ -85,31 +83,13 @@ def overview(paths: list[Path]) -> str:
 
     Raises
     ------
-    DataError
+    FileError
         At a folder that holds no summary, or one that cannot be read.
     """
-    runs = [(run.folder.resolve().name, _summary(run.folder)) for run in find_runs(paths)]
+    runs = [(run.folder.resolve().name, run.summary) for run in find_runs(paths)]
     blocks = [_table(runs[i : i + MOST]) for i in range(0, len(runs), MOST)]
     notes = [_said(name, words) for name, one in runs for words in _notes(one)]
     return "\n\n".join([*blocks, *(["notes\n" + "\n".join(notes)] if notes else [])])
-
-
-def _summary(folder: Path) -> dict:
-    path = folder / "summary.json"
-    if not path.is_file() and (folder / "study.yaml").is_file():
-        raise DataError(
-            f"{folder}: is the folder of a study, expected its runs, as {folder}/runs/*, or read "
-            f"{folder}/table.parquet"
-        )
-    if not path.is_file():
-        raise DataError(f"{folder}: holds no summary.json, expected a folder of `lithofrac run`")
-    try:
-        summary = json.loads(path.read_text())
-    except ValueError as error:
-        raise DataError(f"{path}: expected the summary of a run in JSON ({error})") from None
-    if not isinstance(summary, dict):
-        raise DataError(f"{path}: expected a JSON object, the summary of a run")
-    return summary
 
 
 def _table(runs: list[tuple[str, dict]]) -> str:

@@ -1,6 +1,5 @@
 """Results folders read back: what a run was, and what it gave."""
 
-import json
 import re
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,12 +10,26 @@ import pandas as pd
 
 from lithofrac.analysis.bench import is_bench
 from lithofrac.analysis.frames import Frame, last_frame
+from lithofrac.analysis.reading import Summary, read_summary, read_table
 from lithofrac.analysis.strength import Peak, first_peak
 from lithofrac.config.contact import ROCK
 from lithofrac.config.material import Material
 from lithofrac.config.yaml_file import read_yaml
 from lithofrac.data import DataError
 from lithofrac.problem import Mesh
+
+# Columns that every run has written, whichever version made it.
+LEDGER = (
+    "time_s",
+    "kinetic_J",
+    "elastic_J",
+    "compressive_dissipation_J",
+    "fracture_dissipation_J",
+    "external_J",
+    "damping_J",
+    "residual_J",
+)
+ENDS = ("x1_mm", "y1_mm", "x2_mm", "y2_mm")  # of a crack
 
 
 @dataclass(frozen=True)
@@ -36,9 +49,9 @@ class Run:
         return re.sub(r"_p\d.*$", "", self.name)
 
     @cached_property
-    def summary(self) -> dict:
+    def summary(self) -> Summary:
         """`summary.json`."""
-        return json.loads((self.folder / "summary.json").read_text("utf-8"))
+        return read_summary(self.folder / "summary.json")
 
     @cached_property
     def case(self) -> dict:
@@ -49,19 +62,30 @@ class Run:
     def has_axial_stress(self) -> bool:
         """Whether the history tells an axial stress; a wave in a bar and a hole under traction have
         none."""
-        return "axial_stress_MPa" in pd.read_parquet(self.folder / "history.parquet")
+        return "axial_stress_MPa" in self.records
+
+    @cached_property
+    def records(self) -> pd.DataFrame:
+        """`history.parquet`, all of it."""
+        return read_table(self.folder / "history.parquet", "time_s")
 
     @cached_property
     def history(self) -> pd.DataFrame:
         """`history.parquet` of the axial loading: from the last row without axial strain on."""
-        table = pd.read_parquet(self.folder / "history.parquet")
+        axial = ("time_s", "axial_strain", "axial_stress_MPa")
+        table = read_table(self.folder / "history.parquet", *axial)
         before = np.flatnonzero(table["axial_strain"] <= 0.0)
         return table.iloc[before[-1] if before.size else 0 :].reset_index(drop=True)
 
     @cached_property
     def energy(self) -> pd.DataFrame:
         """`energy.parquet`."""
-        return pd.read_parquet(self.folder / "energy.parquet")
+        return read_table(self.folder / "energy.parquet", *LEDGER)
+
+    @cached_property
+    def probes(self) -> pd.DataFrame:
+        """`probes.parquet`, a row a probe and record."""
+        return read_table(self.folder / "probes.parquet", "time_s", "plastic_strain")
 
     @property
     def discrete(self) -> bool:
@@ -80,7 +104,7 @@ class Run:
             raise DataError(
                 f"{self.folder}: holds no cracks.parquet, expected a run with discrete cracks"
             )
-        table = pd.read_parquet(self.folder / "cracks.parquet")
+        table = read_table(self.folder / "cracks.parquet", "time_s", *ENDS)
         return table.sort_values("time_s", kind="stable", ignore_index=True)
 
     @cached_property

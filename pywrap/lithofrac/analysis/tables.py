@@ -151,7 +151,7 @@ def kirsch(inputs: list[Path], data: Path) -> pd.DataFrame:
     """
     rows = []
     for run in find_runs(inputs):
-        table = pd.read_parquet(run.folder / "probes.parquet")
+        table = run.probes
         mesh = Mesh.load(run.folder / "mesh.npz")
         for row in table.groupby("probe").tail(1).itertuples():
             if row.probe not in HOOP:

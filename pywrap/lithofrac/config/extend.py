@@ -16,6 +16,7 @@ ANY = "*"  # stands for every key of a mapping
 # Keys that may hold the name of a material, and the one that holds a file.
 MATERIALS = (("material",), ("platens", "material"), ("scene", "materials", ANY))
 GEOMETRY = ("scene", "file")
+DEEPEST = 20  # dots of a key; `scene.materials.NAME.KEY` has three
 
 
 @dataclass
@@ -122,12 +123,26 @@ def beside_or_below(name: str, folder: Path) -> Path:
     return path if path.suffix in (".yaml", ".yml") else Path(f"{path}.yaml")
 
 
-def nested(values: Mapping) -> dict:
-    """Turn dotted keys, `loading.confinement_MPa`, into nested mappings."""
+def nested(values: Mapping, where: str = "--set ") -> dict:
+    """Turn dotted keys, `loading.confinement_MPa`, into nested mappings.
+
+    Parameters
+    ----------
+    where : what stands before a key in messages
+
+    Raises
+    ------
+    ConfigError
+        At a key of more levels than any config has.
+    """
     draft = Draft({}, "")
     for key, value in values.items():
         *above, last = str(key).split(".")
-        inner: dict = {last: nested(value) if isinstance(value, Mapping) else value}
+        if len(above) >= DEEPEST:
+            raise ConfigError(
+                f"{where}{one_line(key)}: {len(above)} dots, expected at most {DEEPEST}"
+            )
+        inner: dict = {last: nested(value, where) if isinstance(value, Mapping) else value}
         for name in reversed(above):
             inner = {name: inner}
         draft.put(inner, "")

@@ -68,7 +68,8 @@ class Study(FileOfCases):
                 f"name = {one_line(self.name)}: expected no name beside cases, which have theirs"
             )
         own = self._combined() if self.grid is not None else self.cases
-        self._overrides.update({name: _leaves(nested(keys)) for name, keys in own.items()})
+        for name, keys in own.items():
+            self._overrides[name] = _leaves(nested(keys, f"{name}: "))
         if self.realisations * len(own) > MOST:
             raise ValueError(
                 f"realisations = {self.realisations}: {self.realisations * len(own)} runs, "
@@ -134,7 +135,7 @@ class Study(FileOfCases):
             raise ConfigError(f"{self._file}: {key}: no such file, expected {there}")
         where = "grid" if self.grid is not None else f"cases.{_split(name)[0]}"
         draft = read_draft(base)
-        draft.put(nested(self.set), f"{self._file}: set", folder)
+        draft.put(nested(self.set, f"{self._file}: set."), f"{self._file}: set", folder)
         if self.realisation(name) > 1:
             draft.put({"mesh": {"seed": self.realisation(name)}}, f"{self._file}: realisations")
         draft.put(nested(self.overrides(name)), f"{self._file}: {where}", folder)

@@ -109,7 +109,7 @@ class Suite(FileOfCases):
             key, where = f"extends = {one_line(entry.extends)}", one_line(path, 200)
             raise ConfigError(f"{here}.{key}: no such file, expected {where}")
         draft = read_draft(path)
-        draft.put(nested(entry.set), f"{here}.set", self._file.parent)
+        draft.put(nested(entry.set, f"{here}.set."), f"{here}.set", self._file.parent)
         seed = {"mesh": {"seed": int(found["seed"])}} if found else {}
         draft.put({**seed, **nested(overrides or {})}, "command line", Path())
         return check_case(draft)

@@ -15,6 +15,7 @@ import yaml
 from lithofrac.config.errors import ConfigError, one_line
 
 MOST_BYTES = 1_000_000  # of a file; cases and materials have some thousands
+MOST_DIGITS = 1000  # of a whole number; beyond 309 it is above every float
 INT, FLOAT = "tag:yaml.org,2002:int", "tag:yaml.org,2002:float"
 NUMBERS = {
     INT: re.compile(r"[-+]?[0-9]+\Z"),
@@ -63,7 +64,11 @@ class _Dumper(yaml.SafeDumper):
 
 
 def _decimal(loader: _Loader, node: yaml.ScalarNode) -> int:
-    return int(loader.construct_scalar(node))
+    text = loader.construct_scalar(node)
+    if len(text) > MOST_DIGITS:
+        problem = f"a whole number of {len(text)} digits, expected at most {MOST_DIGITS}"
+        raise yaml.constructor.ConstructorError(None, None, problem, node.start_mark)
+    return int(text)
 
 
 def _unique_mapping(loader: _Loader, node: yaml.MappingNode, deep: bool = False) -> dict:
@@ -120,7 +125,8 @@ def _content(path: Path) -> bytes:
         if path.is_dir():
             raise ConfigError(f"{path}: is a directory, expected a YAML file")
         if not path.exists():
-            raise ConfigError(f"{path}: no such file")
+            why = "is a link that leads to no file" if path.is_symlink() else "no such file"
+            raise ConfigError(f"{path}: {why}")
         if not path.is_file():
             raise ConfigError(f"{path}: is no regular file, expected a YAML file")
         with open(path, "rb") as file:

@@ -62,7 +62,7 @@ class Axis:
     """
 
     def __init__(self, run: Run) -> None:
-        whole = pd.read_parquet(run.folder / "history.parquet")
+        whole = run.records
         self.measured = "axial_strain" in whole
         self.history = run.history if self.measured else whole
         self.x = self._of(self.history)

@@ -23,10 +23,9 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     tension positive. Damage and strength are left out where nothing can break.
     """
     run = only_run(inputs, "gauges")
-    path = run.folder / "probes.parquet"
-    if not path.is_file():
+    if not (run.folder / "probes.parquet").is_file():
         raise DataError(f"{run.folder}: holds no probes.parquet, expected a run with probes")
-    table, axis = pd.read_parquet(path), Axis(run)
+    table, axis = run.probes, Axis(run)
     names = list(table["probe"].unique())
     panels = [draw_stress, draw_strain]
     panels += [] if run.case["material"].get("elastic") else [draw_plastic, draw_strength]

@@ -38,6 +38,7 @@ def give_energy(folder, time_s, internal, ratio):
             "time_s": time_s, "kinetic_J": internal * np.array(ratio),
             "elastic_J": 0.5 * internal, "compressive_dissipation_J": 0.3 * internal,
             "fracture_dissipation_J": 0.2 * internal,
+            "external_J": internal, "damping_J": 0.0, "residual_J": 0.0,
         }
     ).to_parquet(folder / "energy.parquet")  # fmt: skip
 

@@ -129,7 +129,8 @@ def test_hoop_stress_is_held_against_the_plate_of_the_blocks_own_width(
     folder = tmp_path / "kirsch"
     folder.mkdir()
     hoop = {"stress_xx_MPa": -2.2 * exact[0], "stress_yy_MPa": -2.2 * exact[1]}
-    probes = {"probe": ["crown", "sidewall"], "element": [0, 1], **hoop}
+    probes = {"probe": ["crown", "sidewall"], "element": [0, 1], "time_s": 1.0, **hoop}
+    probes["plastic_strain"] = 0.0
     pd.DataFrame(probes).to_parquet(folder / "probes.parquet")
     scene = {"kind": "hole_quarter", "hole_radius_mm": 25.0, "block_over_radius": 8.0}
     case = {"scene": scene, "loading": {"stress_MPa": 2.0}}

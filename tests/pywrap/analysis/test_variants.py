@@ -104,9 +104,9 @@ def test_residual_stress_is_the_mean_over_the_last_tenth_of_the_strain(make_run)
     folder = make_run("a")
     strain = np.linspace(0.0, 0.02, 201)
     stress = np.where(strain >= 0.0179999, 40.0 + 1e4 * (strain - 0.019), 100.0)
-    pd.DataFrame({"axial_strain": strain, "axial_stress_MPa": stress}).to_parquet(
-        folder / "history.parquet"
-    )
+    pd.DataFrame(
+        {"time_s": 0.1 * strain, "axial_strain": strain, "axial_stress_MPa": stress}
+    ).to_parquet(folder / "history.parquet")
     assert residual_stress(Run(folder)) == pytest.approx(40.0)
 
 

@@ -232,6 +232,35 @@ def test_a_folder_or_a_missing_or_unreadable_file(files, refused, tmp_path, monk
     assert refused(path) == f"lithofrac: {path}: cannot be read (Permission denied)\n"
 
 
+def test_a_link_that_leads_round_in_a_circle(files, refused, tmp_path):
+    path = tmp_path / "case.yaml"
+    path.symlink_to(path)
+    said = f"lithofrac: {path}: is a link that leads to no file\n"
+    assert refused(path) == said
+    other = tmp_path / "other.yaml"
+    other.write_text(changed(CASE, "./rock.yaml", str(path)))
+    assert refused(other) == said
+
+
+def test_keys_of_the_command_line_without_end(files, refused):
+    shown = f"{'a.' * 28}a..."
+    assert refused(files(), "--set", f"{'a.' * 2999}a=1") == (
+        f"lithofrac: --set {shown}: 2999 dots, expected at most 20\n"
+    )
+
+
+def test_whole_numbers_without_end(files, refused):
+    path = files(changed(CASE, "records: 5", f"records: {'1' * 5000}"))
+    assert refused(path) == (
+        f"lithofrac: {path}: line 5, column 19: a whole number of 5000 digits, expected at most "
+        "1000\n"
+    )
+    path = files(changed(CASE, "stress_MPa: 1.0", f"stress_MPa: {'1' * 399}"))  # above any float
+    assert refused(path) == (
+        f"lithofrac: {path}: loading.stress_MPa = {'1' * 57}...: expected a number\n"
+    )
+
+
 def test_names_that_are_too_long_for_any_system(files, refused):
     path = files(f"extends: {'x' * 5000}\n")
     said = refused(path)

@@ -5,8 +5,10 @@
 
 import pytest
 
+from lithofrac.core import Run
 from lithofrac.stability.cell import MESHES, Left
 from lithofrac.stability.families import FAMILIES, cells_of
+from lithofrac.stability.families.scales import _torn
 from lithofrac.stability.judge import judge
 from lithofrac.stability.matrix import GOOD
 
@@ -52,6 +54,15 @@ def test_every_family_says_something_of_every_mesh():
         assert {cell.mesh for cell in cells} == set(MESHES), name
         assert {cell.family.replace(" ", "_") for cell in cells} == {name}
         assert any(not isinstance(cell.expected, Left) for cell in cells)
+
+
+def test_cracks_open_in_the_cell_that_drifts_with_new_cracks():
+    """Else it is the cell of the held crack again."""
+    trial = _torn()
+    run = Run(trial.problem)
+    run.set_motion(trial.displacement, trial.velocity)
+    run.advance(1000)
+    assert run.sizes().cracks > 0
 
 
 def test_no_two_cells_have_one_name():

@@ -14,7 +14,8 @@ from lithofrac.stability.models import (
     two_bodies,
 )
 
-RATIOS = (1.0, 1e3, 1e6)
+STIFFNESSES = (1.0, 1e3, 1e6)
+DENSITIES = (1.0, 1e3, 1e4, 1e6)
 STEPS = 4000  # of contact: the slower body hardly moves in fewer
 
 
@@ -36,7 +37,7 @@ def stiffness() -> list[Cell]:
         return Cell("stiffness", extreme, mesh, Stable(make, **more))
 
     found = []
-    for ratio in RATIOS:
+    for ratio in STIFFNESSES:
         words = f"E ratio {ratio:g}"
         soft = softer(ratio)
         mesh = two_bodies(block(), right_half)
@@ -58,7 +59,7 @@ def density() -> list[Cell]:
         return Cell("density", extreme, mesh, Stable(make, **more))
 
     found = []
-    for ratio in RATIOS:
+    for ratio in DENSITIES:
         words = f"density ratio {ratio:g}"
         light, heavy = denser(ratio)
         mesh = two_bodies(block(), right_half)

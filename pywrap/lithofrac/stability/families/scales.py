@@ -150,16 +150,16 @@ def _compared(run: Run, base: Problem, length: float) -> str:
 
 
 def drift() -> list[Cell]:
-    """A million steps: ringing without damping, held cracks, a cracked block that rings."""
+    """A million steps: ringing without damping, a held crack, cracks of the run that ring."""
     words = "1e6 steps"
     later = "margin: see the other families; a search would take as many steps again and again"
     return [
         Cell("drift", f"{words}, ringing", CONTINUUM,
              Stable(_ringing, margin=False, why=later), slow=True),
         Cell("drift", f"{words}, held crack", CONTACT,
-             Stable(lambda: _held(cracks=False), margin=False, why=later), slow=True),
-        Cell("drift", f"{words}, held crack", CRACKED,
-             Stable(lambda: _held(cracks=True), CRACKS, margin=False, why=later), slow=True),
+             Stable(_held, margin=False, why=later), slow=True),
+        Cell("drift", f"{words}, new cracks", CRACKED,
+             Stable(_torn, CRACKS, margin=False, why=later), slow=True),
     ]  # fmt: skip
 
 
@@ -173,21 +173,38 @@ def _ringing() -> Trial:
     return Trial(problem, 0.0 * velocity, velocity)
 
 
-def _held(cracks: bool) -> Trial:
+def _held() -> Trial:
     """A block with a jagged crack under biaxial strain; the slip of its faces must not go on."""
+    problem = _jagged(ELASTIC)
+    start = problem.mesh.nodes * [-1e-4, -8e-4]
+    return Trial(problem, start, 0.0 * start)
+
+
+def _torn() -> Trial:
+    """The same of brittle rock, stretched so far that cracks open at once; nothing damps it.
+
+    Pressed along y as well, at strains of 1e-3 and -1e-3, faces that ring slide on and on at 0.9 of
+    the step: contact gives what friction takes, as much as was put in over a million steps. At 0.8
+    of the step, with damping, or without friction it does not.
+    """
+    problem = _jagged(ROCK.model_copy(update={"fracture_energy_J_m2": 1.0}), fracture=Fracture())
+    start = problem.mesh.nodes * [6e-4, 2e-4]
+    return Trial(problem, start, 0.0 * start)
+
+
+def _jagged(material, **more) -> Problem:
+    """A million steps of a block with a jagged crack, held along its outline."""
     mesh = _crossed(block(4.0 * MM, 4.0 * MM))
     x, y = mesh.nodes.T
     wide = 4.0 * MM
     edge = (np.minimum(x, y) < 1e-6 * wide) | (np.maximum(x, y) > (1.0 - 1e-6) * wide)
     nodes = np.flatnonzero(edge).astype(np.int32)
     loads = (VelocityLoad("x", nodes, 0), VelocityLoad("y", nodes, 1))
-    more = {"fracture": Fracture()} if cracks else {}
     problem = Problem(
-        mesh, False, (ROCK if cracks else ELASTIC,), loads, (), 1.0, time_step_factor=FACTOR,
+        mesh, False, (material,), loads, (), 1.0, time_step_factor=FACTOR,
         contact=Contact(default_friction=0.4), **more,
     )  # fmt: skip
-    start = mesh.nodes * [-1e-4, -8e-4]
-    return Trial(timed(problem, MILLION), start, 0.0 * start)
+    return timed(problem, MILLION)
 
 
 def _crossed(mesh: Mesh) -> Mesh:
