@@ -10,8 +10,8 @@ module lithofrac_mechanics_internal_force
    use lithofrac_material_stress_update, only: point_type, update_pack
    use lithofrac_mechanics_chunks, only: chunks_type, width
    use lithofrac_mechanics_fields, only: fields_type, inelastic_type
-   use lithofrac_mechanics_kinematics, only: elastic_stress, gather, gather_previous, &
-      hoop_strain, nodal_forces, scatter, scatter_hoop, strains, virgin_forces
+   use lithofrac_mechanics_kinematics, only: elastic_forces, elastic_stress, gather, &
+      gather_previous, hoop_strain, nodal_forces, scatter, scatter_hoop, strains, virgin_forces
    implicit none
    private
 
@@ -48,15 +48,15 @@ contains
       associate (gradient => chunks%gradient(:, :, chunk), volume => chunks%volume(:, chunk))
          call displacements(chunks, chunk, fields, du, strain(:, 3))
          done = .false.
-         if (.not. state%touched(chunk)) then
+         if (.not. rock%yields) then
+            call elastic_forces(rock, gradient, volume, du, strain(:, 3), force, stress(:, 3))
+            done = .true.
+         else if (.not. state%touched(chunk)) then
             call virgin_forces(rock, gradient, volume, du, strain(:, 3), force, stress(:, 3), done)
-            done = done .or. .not. rock%yields
          end if
          if (.not. done) then
             call predict(chunks, chunk, rock, du, state, strain, rotation, stress)
-            if (rock%yields) then
-               call return_flagged(chunks, chunk, rock, fields, dt, state, stress, failure)
-            end if
+            call return_flagged(chunks, chunk, rock, fields, dt, state, stress, failure)
             call nodal_forces(width, gradient, volume, strain, rotation, stress, force)
          end if
          call scatter(place, force, buffer)

@@ -14,7 +14,7 @@ module lithofrac_mechanics_kinematics
    implicit none
    private
 
-   public :: area_ratios, elastic_stress, gather, gather_previous, hoop_strain, nodal_forces
+   public :: area_ratios, elastic_forces, elastic_stress, gather, gather_previous, hoop_strain, nodal_forces
    public :: scatter, scatter_hoop, strains, virgin_forces
 
 contains
@@ -140,7 +140,32 @@ contains
       end do
    end subroutine nodal_forces
 
-   !> All of it in one pass, for a chunk that has never yielded; and whether that stays so.
+   !> All of it in one pass, for a chunk that cannot yield.
+   pure subroutine elastic_forces(rock, gradient, volume, du, strain_zz, force, stress_zz)
+      type(rock_type), intent(in) :: rock
+      real(wp), intent(in) :: gradient(width, 4)    !! [1/m]
+      real(wp), intent(in) :: volume(width)         !! [m3] per metre or per radian
+      real(wp), intent(in) :: du(width, 4)          !! x2, y2, x3, y3 relative to corner 1 [m]
+      real(wp), intent(in) :: strain_zz(width)
+      real(wp), intent(out) :: force(width, 4)      !! x2, y2, x3, y3 [N] per metre or per radian
+      real(wp), intent(out) :: stress_zz(width)     !! [Pa]
+
+      integer :: i
+      real(wp) :: xx, yy, xy, c, s, r, sxx, syy, szz, sxy
+
+      !$omp simd private(xx, yy, xy, c, s, r, sxx, syy, szz, sxy)
+      do i = 1, width
+         call stretch(gradient(i, 1), gradient(i, 2), gradient(i, 3), gradient(i, 4), du(i, 1), &
+            du(i, 2), du(i, 3), du(i, 4), xx, yy, xy, c, s, r)
+         call hooke(rock%lame, rock%shear, xx, yy, strain_zz(i), xy, sxx, syy, szz, sxy)
+         call corner_forces(gradient(i, 1), gradient(i, 2), gradient(i, 3), gradient(i, 4), &
+            volume(i), xx, yy, xy, c, s, r, sxx, syy, sxy, force(i, 1), force(i, 2), force(i, 3), &
+            force(i, 4))
+         stress_zz(i) = szz
+      end do
+   end subroutine elastic_forces
+
+   !> The same for a chunk that has never yielded; and whether that stays so.
    !>
    !> `inside` is true only when every stress is within the virgin strength. The check takes no
    !> root, so that a stress on the very edge may be taken for one beyond it, never the reverse.
