@@ -60,6 +60,11 @@ GUARDS = (
     ),
     Guard("unconverged", "the share of all steps in which contact did not converge"),
     Guard("speed", "its speed over that of P waves"),
+    Guard(
+        "contact_work",
+        "the energy that contact pressure has given, over the largest energy so far,",
+        "try a smaller time_step_factor, or damping",
+    ),
     Guard("energy_residual", "energy that has no cause, over the largest so far,"),
 )
 
@@ -105,8 +110,11 @@ class Watch:
         step = self.run.step
         if step % LOOK_STEPS and step < self.steps:
             return []
-        found = self._walk() | {"energy_residual": Reading(self._unexplained(self.run.energy()))}
+        ledger = self.run.energy()
+        found = self._walk() | {"energy_residual": Reading(self._unexplained(ledger))}
         if self.run.problem.contact is not None:
+            given = max(ledger.contact, 0.0) / self.scale if self.scale > 0.0 else 0.0
+            found["contact_work"] = Reading(given)
             unconverged = self.run.contact_statistics().unconverged_steps
             found["unconverged"] = Reading(unconverged / self.steps)
         new = []

@@ -214,6 +214,7 @@ class Guards:
     """When a run is worth a warning, and when it is stopped; all are relative.
 
     energy_residual : of the ledger, over the largest energy so far
+    contact_work : energy that contact pressure has given, over the largest energy so far
     element_area : smallest one, over that in the reference
     overlap : depth of a boundary node in an element, over the shortest boundary edge
     time_step : critical step of the smallest piece of an element, over that of the mesh
@@ -223,6 +224,8 @@ class Guards:
 
     energy_residual_warning: float = 1e-4
     energy_residual_stop: float = 1e-2
+    contact_work_warning: float = 1e-3
+    contact_work_stop: float = 1e-2
     element_area_warning: float = 0.1
     element_area_stop: float = 0.0
     overlap_warning: float = 0.01

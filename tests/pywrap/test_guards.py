@@ -19,9 +19,10 @@ from lithofrac.guards import GUARDS, LOOK_STEPS, Watch
 from lithofrac.problem import Contact, Fracture, Guards, PressureLoad, Ramp
 from lithofrac.results import checkpoint
 from lithofrac.run import simulate
+from lithofrac.stability.families.scales import bases
 
 NEVER = {"element_area_stop": 0.0, "time_step_stop": 0.0, "unconverged_stop": 1.0}
-NEVER |= {f"{name}_stop": 1e9 for name in ("overlap", "speed", "energy_residual")}
+NEVER |= {f"{name}_stop": 1e9 for name in ("overlap", "speed", "energy_residual", "contact_work")}
 
 
 def thrown(speed=0.3):
@@ -70,6 +71,11 @@ def rubble():
     return replace(crowd, end_time=5e-5, records=40, fields=0)
 
 
+def stacked():
+    """Two blocks that are pressed together: waves that cross the contact give a little energy."""
+    return replace(bases()["contact"], records=40, fields=0)
+
+
 NODE = r"step \d+, time \d\.\d{4}E-?\+?\d+ s, node \d+ at \(\S+, \S+\) mm"
 FASTEST = NODE.replace("node", "fastest node")
 ELEMENT = NODE.replace("node", "element")
@@ -79,6 +85,7 @@ TRIGGERS = {  # problem, place, limits of a warning, limits of a stop; without: 
     "overlap": (ring, rf"{NODE}, element \d+ at \(\S+, \S+\) mm", {}, {}),
     "time_step": (torn, ELEMENT, {"time_step_warning": 0.95}, {"time_step_stop": 0.9}),
     "unconverged": (rubble, FASTEST, {"unconverged_warning": 0.01}, {"unconverged_stop": 0.02}),
+    "contact_work": (stacked, FASTEST, {"contact_work_warning": 1e-4}, {"contact_work_stop": 1e-4}),
     "energy_residual": (
         rubble, FASTEST, {"energy_residual_warning": 1e-11}, {"energy_residual_stop": 1e-10},
     ),

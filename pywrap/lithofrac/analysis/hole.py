@@ -201,12 +201,13 @@ def _none(zone: str, criterion: str, note: str) -> Event:
 
 
 def _first(events: list[Event], zone: str, criterion: str) -> Event:
-    """Earliest of the events of a zone; where there is none, why, in the words of most gauges."""
+    """Earliest of the events of a zone; where there is none, why, in the words of most gauges, of
+    equally many in those of the gauge that softens first."""
     found = [event for event in events if not np.isnan(event.time_s)]
     if found:
         return min(found, key=lambda event: event.time_s)
     notes = [event.note for event in events] or ["no probe"]
-    return replace(_none(zone, criterion, ""), note=max(set(notes), key=notes.count))
+    return replace(_none(zone, criterion, ""), note=max(dict.fromkeys(notes), key=notes.count))
 
 
 def is_hole(run: Run) -> bool:

@@ -12,7 +12,7 @@ from lithofrac.config.base import Section
 Limit = Annotated[float, Field(ge=0.0, le=1e9)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
-RISING = ("energy_residual", "overlap", "unconverged", "speed")  # bad when large
+RISING = ("energy_residual", "contact_work", "overlap", "unconverged", "speed")  # bad when large
 FALLING = ("element_area", "time_step")  # bad when small
 
 
@@ -25,6 +25,11 @@ class GuardsSection(Section):
     energy_residual_warning: Limit = 1e-4
     """Residual of the energy ledger and work of turns, over the largest energy so far."""
     energy_residual_stop: Limit = 1e-2
+    """The same, where the run stops."""
+    contact_work_warning: Limit = 1e-3
+    """Energy that contact pressure has given, over the largest energy so far; it should only take
+    some. The ledger closes all the same. Only with `contact:`."""
+    contact_work_stop: Limit = 1e-2
     """The same, where the run stops."""
     element_area_warning: Share = 0.1
     """Smallest area of an element, over that in the undeformed mesh."""

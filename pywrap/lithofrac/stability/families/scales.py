@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lithofrac.core import Run
+from lithofrac.guards import Watch
 from lithofrac.problem import Contact, Fracture, Mesh, Problem, VelocityLoad
 from lithofrac.stability.cell import (
     CONTACT,
@@ -13,6 +14,7 @@ from lithofrac.stability.cell import (
     CRACKS,
     Cell,
     Limits,
+    Refused,
     Stable,
     Trial,
 )
@@ -160,6 +162,8 @@ def drift() -> list[Cell]:
              Stable(_held, margin=False, why=later), slow=True),
         Cell("drift", f"{words}, new cracks", CRACKED,
              Stable(_torn, CRACKS, margin=False, why=later), slow=True),
+        Cell("drift", f"{words}, new cracks, pressed", CRACKED,
+             Refused(_pressed_until_stopped, r"guards\.contact_work_stop"), slow=True),
     ]  # fmt: skip
 
 
@@ -180,16 +184,26 @@ def _held() -> Trial:
     return Trial(problem, start, 0.0 * start)
 
 
-def _torn() -> Trial:
-    """The same of brittle rock, stretched so far that cracks open at once; nothing damps it.
-
-    Pressed along y as well, at strains of 1e-3 and -1e-3, faces that ring slide on and on at 0.9 of
-    the step: contact gives what friction takes, as much as was put in over a million steps. At 0.8
-    of the step, with damping, or without friction it does not.
-    """
+def _torn(xx: float = 6e-4, yy: float = 2e-4) -> Trial:
+    """The same of brittle rock, strained so far that cracks open at once; nothing damps it."""
     problem = _jagged(ROCK.model_copy(update={"fracture_energy_J_m2": 1.0}), fracture=Fracture())
-    start = problem.mesh.nodes * [6e-4, 2e-4]
+    start = problem.mesh.nodes * [xx, yy]
     return Trial(problem, start, 0.0 * start)
+
+
+def _pressed_until_stopped() -> None:
+    """The same, pressed along y: faces that ring at 0.9 of the step slide on and on.
+
+    Contact gives what friction takes, in a million steps as much as was put in, and the ledger
+    closes. Not so at 0.8 of the step, with damping, or without friction. The guard must see it.
+    """
+    trial = _torn(1e-3, -1e-3)
+    run = Run(trial.problem)
+    run.set_motion(trial.displacement, trial.velocity)
+    watch = Watch(run, MILLION)
+    while run.step < MILLION:
+        run.advance(watch.steps_ahead())
+        watch.look()
 
 
 def _jagged(material, **more) -> Problem:
