@@ -9,7 +9,7 @@ module lithofrac_material_mohr_coulomb
    use lithofrac_base_kinds, only: wp
    use lithofrac_material_rock, only: rock_type
    use lithofrac_material_table, only: table_segment
-   use lithofrac_math_angles, only: sine_cosine_of
+   use lithofrac_math_angles, only: sine_cosine
    implicit none
    private
 
@@ -34,15 +34,17 @@ contains
       type(mobilised_type), intent(out) :: now
 
       integer :: i
-      real(wp) :: past, cos_phi, cos_psi
+      real(wp) :: past, sine(2), cosine(2)
 
       i = table_segment(rock%cohesion, ep_eff)
       past = ep_eff - rock%cohesion%origin(i)
       now%knot = huge(1.0_wp)
       if (i < rock%cohesion%n) now%knot = rock%cohesion%x(i + 1)
-      call sine_cosine_of(rock%friction%y(i) + rock%friction%slope(i)*past, now%sin_phi, cos_phi)
-      call sine_cosine_of(rock%dilation%y(i) + rock%dilation%slope(i)*past, now%sin_psi, cos_psi)
-      now%k = (rock%cohesion%y(i) + rock%cohesion%slope(i)*past)*cos_phi
+      call sine_cosine(2, [rock%friction%y(i) + rock%friction%slope(i)*past, &
+         rock%dilation%y(i) + rock%dilation%slope(i)*past], sine, cosine)
+      now%sin_phi = sine(1)
+      now%sin_psi = sine(2)
+      now%k = (rock%cohesion%y(i) + rock%cohesion%slope(i)*past)*cosine(1)
       now%a = 0.5_wp*(1.0_wp + now%sin_phi)
       now%b = 0.5_wp*(1.0_wp - now%sin_phi)
       now%a_flow = 0.5_wp*(1.0_wp + now%sin_psi)

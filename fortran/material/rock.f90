@@ -8,7 +8,7 @@ module lithofrac_material_rock
    use lithofrac_base_kinds, only: pi, wp
    use lithofrac_base_status, only: bad_input, ok, set_failure, status_type
    use lithofrac_material_table, only: new_table, table_type
-   use lithofrac_math_angles, only: sine_cosine_of
+   use lithofrac_math_angles, only: sine_cosine
    implicit none
    private
 
@@ -146,13 +146,14 @@ contains
    pure subroutine set_scales(rock)
       type(rock_type), intent(inout) :: rock
 
-      real(wp) :: cos_phi
+      real(wp) :: sine(1), cosine(1)
 
       rock%strength_scale = rock%tensile_strength
       if (rock%compression) then
          rock%strength_scale = max(rock%strength_scale, maxval(rock%cohesion%y(:rock%cohesion%n)))
-         call sine_cosine_of(rock%friction%y(0), rock%sin_phi0, cos_phi)
-         rock%c_cos_phi0 = rock%cohesion%y(0)*cos_phi
+         call sine_cosine(1, rock%friction%y(0:0), sine, cosine)
+         rock%sin_phi0 = sine(1)
+         rock%c_cos_phi0 = rock%cohesion%y(0)*cosine(1)
       end if
       if (.not. rock%strength_scale > 0.0_wp) rock%strength_scale = rock%young
       rock%yield_tolerance = relative_tolerance*rock%strength_scale

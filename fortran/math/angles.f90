@@ -7,7 +7,7 @@ module lithofrac_math_angles
    implicit none
    private
 
-   public :: sine_cosine, sine_cosine_of
+   public :: sine_cosine
 
 contains
 
@@ -23,32 +23,21 @@ contains
       real(wp), parameter :: odd(8) = [(real((-1)**k, wp)/gamma(real(2*k + 2, wp)), k=1, 8)]
       !> 1/2!, 1/4!, ... of the cosine less one
       real(wp), parameter :: even(8) = [(real((-1)**k, wp)/gamma(real(2*k + 1, wp)), k=1, 8)]
-      real(wp) :: half, q, c, s
+      real(wp) :: half, q, qq, c, s
 
-      !$omp simd private(half, q, c, s)
+      ! Terms in pairs, and pairs of pairs: half as many that wait for each other.
+      !$omp simd private(half, q, qq, c, s)
       do i = 1, n
          half = 0.5_wp*angle(i)
          q = half*half
-         s = half + half*q*(odd(1) + q*(odd(2) + q*(odd(3) + q*(odd(4) + q*(odd(5) &
-            + q*(odd(6) + q*(odd(7) + q*odd(8))))))))
-         c = q*(even(1) + q*(even(2) + q*(even(3) + q*(even(4) + q*(even(5) + q*(even(6) &
-            + q*(even(7) + q*even(8))))))))
+         qq = q*q
+         s = half + half*q*(odd(1) + q*odd(2) + qq*(odd(3) + q*odd(4) &
+            + qq*(odd(5) + q*odd(6) + qq*(odd(7) + q*odd(8)))))
+         c = q*(even(1) + q*even(2) + qq*(even(3) + q*even(4) &
+            + qq*(even(5) + q*even(6) + qq*(even(7) + q*even(8)))))
          sine(i) = 2.0_wp*s + 2.0_wp*s*c
          cosine(i) = 1.0_wp - 2.0_wp*s*s
       end do
    end subroutine sine_cosine
-
-   !> The same of one angle.
-   pure subroutine sine_cosine_of(angle, sine, cosine)
-      real(wp), intent(in) :: angle   !! [rad]
-      real(wp), intent(out) :: sine
-      real(wp), intent(out) :: cosine
-
-      real(wp) :: s(1), c(1)
-
-      call sine_cosine(1, [angle], s, c)
-      sine = s(1)
-      cosine = c(1)
-   end subroutine sine_cosine_of
 
 end module lithofrac_math_angles
