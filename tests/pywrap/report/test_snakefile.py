@@ -360,7 +360,7 @@ def test_speed_is_measured_when_it_is_asked_for_and_one_job_at_a_time(tree):
     made = ("make_benchmark", "make_leave_out", "make_growth", "table_speed", "plot_speed")
     assert [jobs[name] for name in made] == [1] * 5
     rules = (tree / "pywrap" / "rules" / "speed.smk").read_text(encoding="utf-8")
-    assert rules.count("    threads: 64") == 3
+    assert rules.count("    threads: 64") == 4
 
 
 def test_accuracy_is_made_when_it_is_asked_for_and_only_then(tree):
