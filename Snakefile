@@ -167,6 +167,12 @@ def on_page(wildcards):
 report: "reports/captions/suite.rst"
 
 
+def geometry(wildcards):
+    """The Gmsh file of a case that names one."""
+    scene = READ[wildcards.case].scene
+    return str(scene.path) if scene.kind == "gmsh_file" else []
+
+
 @cache
 def cost(case):
     """What a run is expected to take; asked for job by job, as some need a moment."""
@@ -195,6 +201,7 @@ rule all:
 rule simulate:
     input:
         DECIDING,
+        geometry=geometry,
     output:
         summary=f"{OUT}/runs/{{case}}/summary.json",
         history=f"{OUT}/runs/{{case}}/history.parquet",

@@ -109,7 +109,8 @@ contains
       integer :: i
 
       do i = 1, 3
-         if (trial%t(i) - trial%ft(i) > rock%yield_tolerance) flow%tension = ibset(flow%tension, i - 1)
+         if (trial%t(i) - trial%ft(i) <= rock%yield_tolerance) cycle
+         flow%tension = ibset(flow%tension, i - 1)
       end do
       flow%group = no_planes
       if (.not. rock%compression) return

@@ -14,8 +14,8 @@ module lithofrac_mechanics_kinematics
    implicit none
    private
 
-   public :: area_ratios, elastic_forces, elastic_stress, gather, gather_previous, hoop_strain, nodal_forces
-   public :: scatter, scatter_hoop, strains, virgin_forces
+   public :: area_ratios, elastic_forces, elastic_stress, gather, gather_previous, hoop_strain
+   public :: nodal_forces, scatter, scatter_hoop, strains, virgin_forces
 
 contains
 

@@ -148,12 +148,13 @@ KINDS = """figures (.svg .png .pdf)
   material     single_element measured
   sandstone    stress_strain strength stiffness_sweep
   punch, hole  punch punch_patterns hole_gauges hole_patterns size_effect
-  suite        variants stability
+  suite        variants stability accuracy speed
 tables (.csv .parquet)
   runs         strength cracks bands punch results claims errors run_time study
                variants hole_initiation hole_fits hole_checks size_effect kirsch
   rocks        single_element options tautona zigong zigong_fit
                zigong_prediction zigong_prediction_error
+  suite        speed_rows speed_targets
 animation (.gif)
   any run      animation
 """

@@ -225,7 +225,7 @@ class Guards:
     energy_residual_warning: float = 1e-4
     energy_residual_stop: float = 1e-2
     contact_work_warning: float = 1e-3
-    contact_work_stop: float = 1e-2
+    contact_work_stop: float = 0.1
     element_area_warning: float = 0.1
     element_area_stop: float = 0.0
     overlap_warning: float = 0.01

@@ -21,7 +21,9 @@ from pathlib import Path
 
 from lithofrac.analysis.reading import read_summary
 from lithofrac.analysis.study import check_quantities
+from lithofrac.config.case import Case
 from lithofrac.config.errors import ConfigError
+from lithofrac.config.gmsh_file import GmshFile
 from lithofrac.config.material import PACKAGED
 from lithofrac.config.setting import text_of
 from lithofrac.config.study import Study, load_study
@@ -48,13 +50,20 @@ def checked(file: Path) -> tuple[Study, dict[str, str]]:
     wrong: dict[str, list[str]] = {}  # sentence -> runs
     for name in study.names:
         try:
-            texts[name] = text_of(study.case(name))
+            texts[name] = text_of(_placed(study.case(name)))
         except ConfigError as error:
             for line in str(error).splitlines():
                 wrong.setdefault(line, []).append(name)
     if wrong:
         raise ConfigError("\n".join(f"{line} ({_runs(names)})" for line, names in wrong.items()))
     return study, texts
+
+
+def _placed(case: Case) -> Case:
+    """The case as it may stand in any folder."""
+    if not isinstance(case.scene, GmshFile):
+        return case
+    return case.model_copy(update={"scene": case.scene.absolute})
 
 
 def _runs(names: list[str]) -> str:

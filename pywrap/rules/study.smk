@@ -17,9 +17,21 @@ LITHOFRAC = [sys.executable, "-P", "-m", "lithofrac"]
 
 
 @cache
+def read(case):
+    """A case of the study."""
+    return load_case(f"cases/{case}.yaml")
+
+
+@cache
 def cost(case):
     """What a run is expected to take."""
-    return predicted(load_case(f"cases/{case}.yaml"))
+    return predicted(read(case))
+
+
+def geometry(wildcards):
+    """The Gmsh file of a case that names one."""
+    scene = read(wildcards.case).scene
+    return str(scene.path) if scene.kind == "gmsh_file" else []
 
 
 wildcard_constraints:
@@ -39,7 +51,8 @@ rule all:
 
 rule simulate:
     input:
-        "cases/{case}.yaml",
+        case="cases/{case}.yaml",
+        geometry=geometry,
     output:
         "runs/{case}/summary.json",
     log:
@@ -56,7 +69,7 @@ rule simulate:
     message:
         "Mesh and run {wildcards.case}"
     shell:
-        "{params.program:q} run {input:q} --out runs/{wildcards.case}"
+        "{params.program:q} run {input.case:q} --out runs/{wildcards.case}"
         " --threads {threads} --resume-if-possible > {log:q} 2>&1"
 
 

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import time
 
 import pytest
 from fault_runs import assert_same, summary
@@ -51,7 +52,12 @@ def test_stopped_before_its_first_record_it_has_nothing_to_keep_and_says_so(
     cracking, tmp_path, monkeypatch, capsys, number
 ):
     out = tmp_path / "out"
-    monkeypatch.setattr(Recorder, "__init__", lambda *_: os.kill(os.getpid(), number))
+
+    def stopped(*_):
+        os.kill(os.getpid(), number)
+        time.sleep(10.0)  # another thread may be told first; the interruption ends this
+
+    monkeypatch.setattr(Recorder, "__init__", stopped)
     assert main(cracking.words(out)) == 130
     assert capsys.readouterr().err == "lithofrac: interrupted\n"
     assert not (out / "summary.json").exists()

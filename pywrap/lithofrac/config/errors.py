@@ -79,7 +79,7 @@ def _sentence(key: str, item: dict, section: type[BaseModel] | None) -> str:
     shown = f"{key} = {one_line(value)}" if isinstance(value, (bool, int, float, str)) else key
     if kind == "literal_error" and isinstance(value, str):
         return f"{shown}: unknown word, {suggestion(value, _words(context['expected']))}"
-    field = section.model_fields.get(item["loc"][-1]) if section else None
+    field = section.model_fields.get(item["loc"][-1]) if section and item["loc"] else None
     span = _range(field.annotation, field.metadata) if field and kind in BOUNDS else ""
     return f"{shown}: expected {span or _expected(kind, context)}"
 

@@ -52,6 +52,11 @@ class GmshFile(Section):
         return Path(self.file)
 
     @property
+    def absolute(self) -> "GmshFile":
+        """The same, with a file that is found from any folder."""
+        return self.model_copy(update={"file": os.path.abspath(self.file)})
+
+    @property
     def unit(self) -> float:
         """Length of one unit of the file [m]."""
         return UNITS[self.length_unit]

@@ -8,7 +8,8 @@ import re
 
 COMMANDS = (
     "System", "SystemCall", "NonBlockingSystemCall", "OnelabRun", "OnelabAction", "ExternalProcess",
-    "CommandLine", "Plugin", "Solver", "General", "GmshOption",
+    "CommandLine", "Plugin", "Solver", "General", "GmshOption", "Sleep",
+    "StringToName", "S2N",  # which make any word out of pieces
 )  # fmt: skip
 FILES = (
     "Include", "Merge", "MergeWithBoundingBox", "ShapeFromFile", "Structured", "FileName",

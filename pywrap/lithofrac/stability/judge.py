@@ -49,7 +49,7 @@ class Seen:
     gain: float = 0.0
     speed: float = 0.0
     penetration: float = 0.0
-    overlap: float = 0.0
+    overlap: float | None = None  # where it was looked for
     contact_work: float = 0.0
     turning: float = 0.0
     cracks: int = 0
@@ -125,7 +125,7 @@ def _stable(expected: Stable) -> dict:
         "internal_over_put_in": seen.gain,
         "speed_over_wave": seen.speed,
         "penetration_over_h": seen.penetration if trial.problem.contact else None,
-        "overlap_over_h": seen.overlap if trial.problem.contact else None,
+        "overlap_over_h": seen.overlap,
         "contact_work": seen.contact_work if trial.problem.contact else None,
         "turning": seen.turning,
         "cracks": seen.cracks if trial.problem.fracture else None,
@@ -173,9 +173,9 @@ def faults_of(seen: Seen, limits: Limits) -> list[str]:
             ),
             (
                 "overlap at the end over h",
-                seen.overlap,
+                seen.overlap or 0.0,
                 f"at most {limits.overlap:g}",
-                seen.overlap <= limits.overlap,
+                (seen.overlap or 0.0) <= limits.overlap,
             ),
             (
                 "work of contact over the energy put in",

@@ -32,6 +32,7 @@ NOT_WATCHED = {
     "claims": "verdicts on runs that are watched",
     "variants": "differences between runs that are watched",
     "study": "of the files of users",
+    **dict.fromkeys(("speed_rows", "speed_targets"), "of the machine"),
     "run_time": "of the machine; the rest stands in summary.json",
     "results": "words made of the other tables",
 }

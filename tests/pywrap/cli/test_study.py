@@ -229,3 +229,51 @@ def test_profile_that_is_not_there_is_refused_before_anything_is_written(study, 
         "one of: pbs, slurm\n"
     )
     assert not out.exists()
+
+
+BLOCK = """\
+h = 10;
+Point(1) = {0, 0, 0}; Point(2) = {40, 0, 0}; Point(3) = {40, 60, 0}; Point(4) = {0, 60, 0};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};
+Physical Surface("pillar") = {1}; Physical Curve("floor") = {1}; Physical Curve("roof") = {3};
+Mesh.MeshSizeMin = h; Mesh.MeshSizeMax = h;
+"""
+PILLAR = """\
+title: Pillar
+material: sandstone
+scene: {kind: gmsh_file, file: block.geo, length_unit: mm}
+loading:
+  kind: boundaries
+  held: {floor: xy}
+  driven: {roof: {x_mm: 0, y_mm: -0.01}}
+  speed_m_s: 0.4
+  axial: roof
+"""
+PILLARS = """\
+title: Pillars
+base: pillar.yaml
+grid: {loading.speed_m_s: [0.4]}
+name: v{loading.speed_m_s}
+quantities: [elements]
+plot: {x: loading.speed_m_s, y: [elements]}
+"""
+
+
+def test_a_study_follows_the_geometry_file_of_its_base(tmp_path):
+    """Named by a relative path, as the guide does it; an edited file is meshed and run again."""
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    for name, text in (("block.geo", BLOCK), ("pillar.yaml", PILLAR), ("s.yaml", PILLARS)):
+        (mine / name).write_text(text)
+
+    def elements():
+        done = lithofrac(tmp_path, "study", "mine/s.yaml", "--out", "out")
+        assert done.returncode == 0, done.stderr
+        return pd.read_parquet(tmp_path / "out" / "table.parquet")["elements"].tolist()
+
+    coarse = elements()
+    assert elements() == coarse
+    (mine / "block.geo").write_text(BLOCK.replace("h = 10", "h = 5"))
+    (fine,) = elements()
+    assert fine > 3 * coarse[0]

@@ -182,6 +182,9 @@ Plane Surface(3) = {3};
             "GmshOption",
         ),
         ('OnelabAction "reset";', "OnelabAction"),
+        ('StringToName[StrCat("Sys", "temCall")] "touch TOUCHED";', "StringToName"),
+        ('S2N[StrCat("Sa", "ve")] "TOUCHED";', "S2N"),
+        ("Sleep 100000;", "Sleep"),
         ('/* " */ SystemCall "touch TOUCHED"; // "', "SystemCall"),
     ],
 )
