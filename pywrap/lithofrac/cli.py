@@ -16,7 +16,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithofrac.arguments import parser
-from lithofrac.intake import accepted, case_of, made_of, mesh_of, prepare, resumed, warn, way_on
+from lithofrac.intake import (
+    accepted,
+    case_of,
+    made_of,
+    mesh_of,
+    prepare,
+    resumed,
+    warn,
+    way_on,
+    within_budget,
+)
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -100,8 +110,9 @@ def check(options: Namespace) -> int:
         _print_plan(names[0], case)
         warn(names[0], case)
         return GOOD
-    for name in names:
-        print(f"{name}: {case_of(name, options).title}")
+    titles = {name: within_budget(name, case_of(name, options)).title for name in names}
+    for name, title in titles.items():
+        print(f"{name}: {title}")
     print(f"{len(names)} cases are right")
     return GOOD
 

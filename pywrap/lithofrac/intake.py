@@ -93,6 +93,18 @@ def accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
     return problem, expected
 
 
+def within_budget(name: str, case: Case) -> Case:
+    """The case, if it is not above its budget by prediction; nothing is meshed."""
+    from lithofrac.config import ConfigError
+    from lithofrac.config.cost import refuse_above_budget
+
+    try:
+        refuse_above_budget(case)
+    except ConfigError as error:
+        raise ConfigError(f"{name}: {error}") from None
+    return case
+
+
 def resumed(options: Namespace, problem: Problem) -> tuple[bool, list[str]]:
     """Whether the run goes on from a checkpoint, and sentences on what is odd about that.
 

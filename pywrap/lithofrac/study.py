@@ -22,6 +22,7 @@ from pathlib import Path
 from lithofrac.analysis.reading import read_summary
 from lithofrac.analysis.study import check_quantities
 from lithofrac.config.case import Case
+from lithofrac.config.cost import refuse_above_budget
 from lithofrac.config.errors import ConfigError
 from lithofrac.config.gmsh_file import GmshFile
 from lithofrac.config.material import PACKAGED
@@ -34,6 +35,13 @@ HERE = Path(__file__).parent
 RULES = HERE / "_rules" / "study.smk"
 JOB = re.compile(r" *Job \d+: (.*)")  # how Snakemake says that one starts
 GRACE, CANCEL = 5.0, 60.0  # [s] for what is stopped to end by itself, here and on a cluster
+
+DECIDING = (
+    "_core*.so",
+    *(f"{name}.py" for name in ("core", "guards", "problem", "run")),
+    *(f"analysis/{name}.py" for name in ("crack_faces", "frames", "run_numbers", "strength")),
+    *(f"{folder}/*.py" for folder in ("config", "results", "scenes")),
+)  # as in the Snakefile of a suite
 
 
 def checked(file: Path) -> tuple[Study, dict[str, str]]:
@@ -50,7 +58,9 @@ def checked(file: Path) -> tuple[Study, dict[str, str]]:
     wrong: dict[str, list[str]] = {}  # sentence -> runs
     for name in study.names:
         try:
-            texts[name] = text_of(_placed(study.case(name)))
+            case = study.case(name)
+            refuse_above_budget(case)
+            texts[name] = text_of(_placed(case))
         except ConfigError as error:
             for line in str(error).splitlines():
                 wrong.setdefault(line, []).append(name)
@@ -222,9 +232,8 @@ def _write_if_new(path: Path, text: str) -> None:
 
 
 def _mark_of_core() -> str:
-    """Mark of what decides a result beside its case: the compiled core, and the scenes."""
-    files = [*HERE.glob("_core*.so"), *HERE.glob("scenes/*.py")]
+    """Mark of what decides a result beside its case: the compiled core, and what a run imports."""
     digest = hashlib.sha256()
-    for file in sorted(files):
+    for file in sorted(file for words in DECIDING for file in HERE.glob(words)):
         digest.update(file.name.encode() + file.read_bytes())
     return digest.hexdigest()[:16]

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from lithofrac.config.case import Case
 from lithofrac.config.element_count import element_count
+from lithofrac.config.errors import ConfigError
 from lithofrac.config.gmsh_file import GmshFile
 from lithofrac.config.loading import TractionLoading
 from lithofrac.config.scene import (
@@ -99,6 +100,23 @@ def predicted(case: Case) -> Cost:
     rate = rate_of(not case.material.elastic, case.contact is not None, _is_axial(case.scene))
     seconds = run_seconds(elements, steps, case.output.records, case.output.fields, rate)
     return Cost(elements, steps, seconds)
+
+
+def refuse_above_budget(case: Case) -> None:
+    """Refuse what is above `budget_element_steps` by prediction, where nothing is meshed.
+
+    Raises
+    ------
+    ConfigError
+        With the prediction.
+    """
+    cost = predicted(case)
+    if isinstance(case.scene, GmshFile) or cost.elements * cost.steps <= case.budget_element_steps:
+        return
+    raise ConfigError(
+        f"budget_element_steps = {case.budget_element_steps:g}: the run takes about "
+        f"{cost.elements:.2g} elements times {cost.steps:.2g} steps"
+    )
 
 
 def rate_of(yields: bool, contact: bool, axisymmetric: bool) -> float:

@@ -5,6 +5,7 @@ Rows on meshes are in `test_bad_meshes.py`; more of what a case may hold in `tes
 
 import json
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -355,6 +356,19 @@ def test_a_case_above_its_budget_is_refused(files, tmp_path, capsys, command):
     assert said.err.count("\n") == 1
     assert sorted(tmp_path.rglob("*")) == before
     assert main([command, str(path), *out, "--set", "budget_element_steps=1e6"]) == 0
+
+
+def test_of_several_cases_one_above_its_budget_is_refused_by_prediction(files, capsys):
+    path = files(CASE + "budget_element_steps: 100\n")
+    assert main(["check", "bar_wave", str(path)]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert re.fullmatch(
+        rf"lithofrac: {re.escape(str(path))}: budget_element_steps = 100: the run takes about "
+        r"\d+ elements times \d+ steps\n",
+        said.err,
+    )
+    assert main(["check", str(path), str(path), "--set", "budget_element_steps=1e6"]) == 0
 
 
 # ---------------------------------------------------------------- paths
