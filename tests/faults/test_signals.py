@@ -14,6 +14,14 @@ pytestmark = [pytest.mark.restart, pytest.mark.one_build]
 SIGNALS = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 
 
+@pytest.fixture(autouse=True)
+def listening():
+    """Ctrl-C is heard; a shell starts what it sends to the background deaf to it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @SIGNALS
 def test_stopped_run_keeps_where_it_was(cracking, unbroken, tmp_path, number):
     out = tmp_path / "out"
