@@ -109,8 +109,9 @@ SANDSTONE = Subject(
     },
     ("peak stress",),
     reasons={
-        "peak stress": "Up to its peak the specimen is uniform and any mesh will do; the default "
-        "is for the shear band that follows."
+        "peak stress": "Up to its peak the specimen is uniform: 2.5 and 0.35 mm differ by 0.1 %. "
+        "The default is a choice for the shear band that follows, 10 elements over the radius in "
+        "place of 2."
     },
     finest={"element_size_mm": 0.35, "speed_m_s": 0.05},
 )
@@ -129,7 +130,7 @@ HOLE = Subject(
         "release_steps": "auto",
     },
     {
-        "element_size_mm": (HOLE_RADIUS / 4.0, HOLE_RADIUS / 6.0, HOLE_RADIUS / 18.0),
+        "element_size_mm": tuple(HOLE_RADIUS / n for n in (4.0, 6.0, 18.0, 24.0)),
         "speed_m_s": (0.01, 0.05, 0.1, 0.2),
         "time_step_factor": (0.45,),
         "damping_fraction": (0.03, 0.9),
@@ -139,12 +140,14 @@ HOLE = Subject(
     },
     ("primary, curvature", "primary, first crack", "sidewall, curvature"),
     reasons={
-        "primary, curvature": "Not converged: the gauge lies half an element from the wall, so "
-        "that every mesh reads it elsewhere, and what is cheap is near by chance.",
-        "primary, first crack": "Coarser meshes miss it by as much, but not what happens at the "
-        "sidewall.",
-        "sidewall, curvature": "At a higher speed initiation is as near; the speed of the case "
-        "was chosen for the whole way to the collapse of the block.",
+        "primary, curvature": "Not converged: 1.50, 1.72 and 1.75 MPa on 12, 18 and 24 elements a "
+        "radius. The gauge lies half an element from the wall, so that every mesh reads it "
+        "elsewhere, and what is cheap is near by chance.",
+        "primary, first crack": "4 elements a radius miss it by as little, but the sidewall by "
+        "14 %; all three are read from one run.",
+        "sidewall, curvature": "0.05 m/s would do as well: it moves the sidewall by 0.2 % and the "
+        "largest load of the whole test by 0.7 % (29.73 MPa against 29.52). 0.02 m/s is a choice "
+        "for the collapse, which has 435 cracks at its end and 259 at 0.05 m/s.",
     },
     finest={"element_size_mm": HOLE_RADIUS / 24.0, "speed_m_s": 0.01},
 )
@@ -173,8 +176,9 @@ PUNCH = Subject(
     },
     ("peak stress",),
     reasons={
-        "peak stress": "Meshes scatter without an order, so that a coarser one is as near; the "
-        "default is for the pattern below the strip that follows the peak."
+        "peak stress": "Meshes of 2, 1.43, 1 and 0.85 mm scatter within 1 % without an order "
+        "(438.3, 439.7, 439.0, 442.4 MPa), so that a coarser one is as near; the default is a "
+        "choice for the pattern that follows, 10 elements over the strip in place of 5."
     },
     finest={"element_size_mm": 0.7, "speed_m_s": 0.05},
 )

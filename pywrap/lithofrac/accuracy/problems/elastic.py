@@ -144,7 +144,7 @@ BAR_WAVE = Subject(
     },
     ("velocity, L2",),
     reasons={
-        "velocity, L2": "The case reads the arrival of the front, which has to be sharp; it takes "
-        "a fraction of a second."
+        "velocity, L2": "A choice: 40 elements over the front in place of 16 at 1.25 mm, an error "
+        "of 0.1 % in place of 0.7 %, for 0.02 core seconds."
     },
 )
