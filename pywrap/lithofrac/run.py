@@ -48,18 +48,16 @@ def plan(problem: Problem) -> dict:
     run = Run(problem)
     elements = len(problem.mesh.triangles)
     steps = math.ceil(problem.end_time / run.dt)
-    yields = any(m.options[3] for m in problem.materials)
-    rate = rate_of(yields, problem.contact is not None, problem.axisymmetric)
     return {
         "elements": elements,
         "nodes": len(problem.mesh.nodes),
         "bodies": len(problem.mesh.body_names),
         "time_step_s": run.dt,
         "steps": steps,
-        "expected_seconds": run_seconds(elements, steps, problem.records, problem.fields, rate),
+        "expected_seconds": expected_seconds(problem, steps),
         "uses": {
             "axisymmetry": problem.axisymmetric,
-            "yield check": yields,
+            "yield check": any(m.options[3] for m in problem.materials),
             "Mohr-Coulomb planes": any(m.options[3] and m.options[2] for m in problem.materials),
             "regularised softening": any(m.reference_width > 0.0 for m in problem.materials),
             "damping": problem.damping.fraction > 0.0 or bool(problem.damping.alpha),
@@ -70,6 +68,15 @@ def plan(problem: Problem) -> dict:
             "field output": problem.fields > 0,
         },
     }
+
+
+def expected_seconds(problem: Problem, steps: int) -> float:
+    """Time that so many steps are expected to take on one core [s]."""
+    confined = any(load.pressure > 0.0 for load in problem.pressure_loads)
+    options = [material.options for material in problem.materials]
+    rate = rate_of(options, problem.contact is not None, problem.axisymmetric, confined)
+    elements = len(problem.mesh.triangles)
+    return run_seconds(elements, steps, problem.records, problem.fields, rate)
 
 
 def simulate(
@@ -329,6 +336,7 @@ class _Session:
             "time_step_continuum_s": Run(replace(self.problem, fracture=None)).dt,
             "threads": self.threads,
             "core_seconds": core,
+            "expected_seconds": expected_seconds(self.problem, run.step),
             "wall_seconds": self.wall_seconds,
             "element_steps_per_core_second": elements * run.step / core,
             "energy": {name: finite(value) for name, value in last.items()},

@@ -24,6 +24,7 @@ KINDS = {
     "energy_residual": (NUMBER, "a number"),
     "core_seconds": (NUMBER, "a number"),
     "wall_seconds": (NUMBER, "a number"),
+    "expected_seconds": (NUMBER, "a number"),
     "time_step_min_s": (NUMBER, "a number"),
 }  # key of a summary -> what it holds where it is there
 

@@ -32,6 +32,8 @@ SUMMARY = (
     "steps",
     "wall_seconds",
     "core_seconds",
+    "expected_seconds",
+    "expected_over_measured",
     "element_steps_per_core_second",
     "energy_residual",
     "kinetic_ratio_at_peak",
@@ -187,7 +189,9 @@ def run_time(inputs: list[Path], data: Path) -> pd.DataFrame:
     rows = []
     for run in find_runs([path for path in paths if path != file]):
         ratio = ratio_before_peak(run)
+        expected = run.summary.get("expected_seconds", np.nan)
         judged = {
+            "expected_over_measured": expected / run.summary["core_seconds"],
             "kinetic_ratio_before_peak": ratio,
             "kinetic_verdict": OPEN if np.isnan(ratio) else verdict(ratio < band),
         }
