@@ -13,7 +13,7 @@ from fault_runs import LITHOFRAC, ROOT, assert_same, summary
 from lithofrac.cli import main
 from lithofrac.results.recorder import Recorder
 
-pytestmark = [pytest.mark.restart, pytest.mark.one_build]
+pytestmark = pytest.mark.restart
 SIGNALS = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 
 
@@ -100,6 +100,7 @@ def installed() -> list[str]:
     ]
 
 
+@pytest.mark.no_core  # it ends before the core is there
 @pytest.mark.parametrize(
     "line",
     ["signal.raise_signal(signal.SIGINT)", "exec('signal.raise_signal(signal.SIGINT)')"],
