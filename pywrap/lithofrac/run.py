@@ -44,8 +44,15 @@ def plan(problem: Problem) -> dict:
     dict
         elements, nodes, bodies, time_step_s, steps, expected_seconds (one core), and
         `uses`: feature -> bool.
+
+    Raises
+    ------
+    CoreError
+        Where the core refuses the problem, or parts overlap at the start.
     """
     run = Run(problem)
+    if problem.contact is None:  # which looks for itself
+        run.refuse_overlap()
     elements = len(problem.mesh.triangles)
     steps = math.ceil(problem.end_time / run.dt)
     return {

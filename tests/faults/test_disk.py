@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from fault_runs import LITHOFRAC, assert_same, wait_for_checkpoints
 
+# One small run again and again, what is tested is how files are written; for the core, the same
+# run is stopped and resumed in test_signals.py and test_damage.py.
 pytestmark = [pytest.mark.restart, pytest.mark.one_build]
 DROP_FROM_BOUNDING_SET, DAC_OVERRIDE = 24, 1  # <linux/prctl.h>, <linux/capability.h>
 

@@ -19,7 +19,7 @@ from lithofrac.analysis.study import SUMMARY
 from lithofrac.cli import main
 from lithofrac.results.columns import ENERGY_COLUMNS
 
-pytestmark = pytest.mark.no_core  # it runs cases, but what is tested is not the build of the core
+pytestmark = pytest.mark.no_core  # it runs cases, but what is tested is the study around them
 
 CASE = Path("configs/cases/single_element.yaml").resolve()
 STUDY = f"""\
