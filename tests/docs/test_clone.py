@@ -130,7 +130,8 @@ def test_a_clone_does_what_a_page_says(page, clone, slurm):
 def test_what_is_submitted_by_qsub_names_time_and_memory(clone, slurm):
     """Words of the page on clusters, as the stand-in was given them by the test before."""
     page = ROOT / "reports" / "guide" / "cluster.md"
-    test_a_clone_does_what_a_page_says(page, clone, slurm) if not said(clone) else None
+    if not said(clone):  # where this test runs alone
+        test_a_clone_does_what_a_page_says(page, clone, slurm)
     words = said(clone)
     assert re.search(r"-l select=1:ncpus=\d+:mem=\d+mb,walltime=\d+:\d+:00 ", words)
     assert re.search(r"-terse .* -pe smp \d+ -l h_vmem=\d+M,h_rt=\d+ ", words)
