@@ -15,6 +15,7 @@ from lithofrac.scenes._join import flattened, joined
 from lithofrac.scenes._platens import back_of, guided, name_of, platen, pushed
 from lithofrac.scenes._size import jittered
 from lithofrac.scenes._timing import velocity_timing
+from lithofrac.scenes._worst import improved
 
 
 def mesh(case: Case, seed: int) -> Mesh:
@@ -73,7 +74,9 @@ Physical Curve("left") = {{8}};
 Physical Surface("rock") = {{1}};
 {jittered(size, fine, seed)}"""
     )
-    made = finished(raw.nodes, raw.triangles, raw.lines, raw.body, raw.body_names)
+    boundary = np.unique(np.concatenate(list(raw.lines.values())))
+    nodes = improved(raw.nodes, raw.triangles, boundary)
+    made = finished(nodes, raw.triangles, raw.lines, raw.body, raw.body_names)
     faces = {"bottom": (1, 0.0), "right": (0, width), "strip": (1, top), "left": (0, 0.0)}
     return flattened(made, faces)
 
