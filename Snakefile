@@ -48,7 +48,11 @@ CORE = [
 # Of `config`, but for pages, warnings, and what no case of a suite uses.
 WORDS = ["doubts", "reference", "schema", "setting", "study"]
 CONFIG = [file for file in modules("config") if Path(file).stem not in WORDS]
-SHARED = [*CORE, *CONFIG, *modules("", "errors", "mesh_flaws", "npz", "problem")]
+SHARED = [
+    *CORE,
+    *CONFIG,
+    *modules("", "errors", "mesh_flaws", "npz", "plain_file", "problem"),
+]
 POINT = [*SHARED, *modules("", "kernels", "point")]
 DECIDING = [
     *SHARED,

@@ -12,11 +12,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 import lithofrac
+from lithofrac import guards
 from lithofrac._build import NATIVE
 from lithofrac.analysis.crack_faces import find_faces
 from lithofrac.analysis.frames import MM, Frame
@@ -139,6 +141,27 @@ def simulate(
         return _to_its_end(session, out, progress)
 
 
+LAYOUT = {
+    "state": ("f8", ("state",)),
+    "clocks": ("f8", (2,)),
+    "frames": ("f8", ("frames",)),
+    "finished": ("b1", ()),
+} | guards.LAYOUT  # of a checkpoint, beside what the recorder keeps
+
+
+def misfit(problem: Problem, arrays: dict[str, np.ndarray]) -> str:
+    """Why the arrays of a checkpoint are not those of a run of `problem`, or nothing."""
+    run = Run(problem)
+    why = checkpoint.misfit(arrays, {**LAYOUT, **Recorder(run).layout()})
+    if why or not len(arrays["history"]):
+        return why or "it holds no record"
+    try:
+        run.restore(arrays["state"])
+    except CoreError as error:
+        return str(error)
+    return ""
+
+
 def _to_its_end(session: _Session, out: Path, progress: Callable[[dict], None] | None) -> dict:
     """Step a session to its end; whatever stops it, the folder says so."""
     try:
@@ -188,7 +211,7 @@ class _Session:
         return self.wall_before + time.perf_counter() - self.wall_start
 
     def resume(self) -> None:
-        found = checkpoint.recover(self.out, self.mark)
+        found = checkpoint.recover(self.out, self.mark, partial(misfit, self.problem))
         arrays = found.arrays
         self.notes += found.notes
         self.run.restore(arrays["state"])

@@ -20,6 +20,7 @@ from lithofrac.analysis.runs import Run, find_runs
 from lithofrac.analysis.verdict import OPEN, verdict
 from lithofrac.config.material import Material
 from lithofrac.data import Curve, load_curves, measured_strength
+from lithofrac.data.csv_file import read_bands
 from lithofrac.problem import Mesh
 
 MPA = 1e6
@@ -185,7 +186,7 @@ def run_time(inputs: list[Path], data: Path) -> pd.DataFrame:
     """
     paths = [Path(path) for path in inputs]
     (file,) = (path for path in paths if path.name == "bands.csv")
-    band = pd.read_csv(file).set_index("quantity")["band"]["kinetic_ratio_before_peak"]
+    band = read_bands(file)["kinetic_ratio_before_peak"]
     rows = []
     for run in find_runs([path for path in paths if path != file]):
         ratio = ratio_before_peak(run)
