@@ -100,7 +100,7 @@ def test_the_share_of_the_roof_is_of_the_lower_one(monkeypatch):
     assert found["roofline_fraction"] == pytest.approx(machine.FLOPS["full_step"])
 
 
-@pytest.mark.one_build
+@pytest.mark.one_build  # what a special build takes of memory tells nothing
 def test_memory_is_that_of_the_elements(monkeypatch):
     monkeypatch.setattr(machine, "MEMORY_CELLS", (8, 64))
     used = machine.memory()
