@@ -70,7 +70,8 @@ def safe_errors(runs: pd.DataFrame) -> np.ndarray:
 
     Returns
     -------
-    (n,); infinite where a dearer run of the same knob has no number.
+    (n,); infinite where a dearer run along the same knob ended without the quantity, NaN where a
+    run itself did or failed.
     """
     work = runs["elements"].to_numpy(float) * runs["steps"].to_numpy(float)
     error = runs["error_percent"].to_numpy(float)

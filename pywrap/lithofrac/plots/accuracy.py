@@ -39,7 +39,8 @@ KNOBS = {
     "insertion": (style.RED, "P", "insertion mode"),
     "release_steps": (style.GREY, "X", "release steps"),
 }
-NEEDED = ["problem", "quantity", "knob", "error_percent", "core_seconds", "elements", "steps"]
+NUMBERS = ["error_percent", "core_seconds", "elements", "steps"]
+NEEDED = ["problem", "quantity", "knob", *NUMBERS]
 
 
 def figure(inputs: list[Path], data: Path) -> Figure:
@@ -52,9 +53,12 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     """
     if len(inputs) != 1:
         raise DataError(f"plot accuracy: expected one accuracy.csv, got {len(inputs)} files")
-    table = read_columns(inputs[0], NEEDED, "accuracy.csv", ("error_percent", "core_seconds"))
+    table = read_columns(inputs[0], NEEDED, "accuracy.csv", NUMBERS)
     table = table[table["knob"] != FINEST]
     groups = list(table.groupby(["problem", "quantity"], sort=False))
+    for names, own in groups:
+        if (own["knob"] == DEFAULT).sum() != 1:
+            raise DataError(f"{inputs[0]}: {', '.join(names)}: expected one row of the default")
     rows = -(-len(groups) // COLUMNS)
     drawn, axes = style.new_figure(rows, COLUMNS, height=rows * PANEL_HEIGHT + LEGEND_HEIGHT)
     for panel, ((problem, quantity), own) in zip(axes.flat, groups, strict=False):

@@ -77,3 +77,20 @@ def test_another_table_is_refused(table, data_folder):
     table.write_text("a,b\n1,2\n")
     with pytest.raises(DataError, match="column 'problem' is missing, expected problem"):
         accuracy.figure([table], data_folder)
+
+
+def test_a_problem_without_its_default_is_refused(table, data_folder):
+    rows = pd.read_csv(table)
+    rows[(rows["problem"] != "b") | (rows["knob"] != "default")].to_csv(table, index=False)
+    with pytest.raises(DataError, match="b, peak: expected one row of the default"):
+        accuracy.figure([table], data_folder)
+
+
+def test_a_run_that_failed_is_left_out(table, data_folder):
+    """Its work is not known, so that it bars no other: 0.5 s count as much as the 2 s of 0.5 %."""
+    rows = pd.read_csv(table)
+    failed = rows["core_seconds"] == 1.5
+    rows.loc[failed, ["error_percent", "core_seconds", "elements", "steps"]] = float("nan")
+    rows.to_csv(table, index=False)
+    panel = accuracy.figure([table], data_folder).axes[0]
+    assert list(lines_of(panel)["Pareto front"].get_xdata()) == [0.5, 4.0]
