@@ -12,6 +12,10 @@ import pandas as pd
 from lithofrac.analysis.verdict import OPEN, verdict
 from lithofrac.data import DataError
 
+NONE = "-"  # verdict where nothing was asked
+BYTES = " bytes per element"
+# Steps of two threads: contact is solved by one of them, what yields lies in few of their blocks.
+THREADED = ("full_step", "full_step_yielding_10", "discrete_step_pairs_0.1")
 NEAR = 0.02  # relative, of a number of elements
 WITHIN = 2.0  # factor, of a predicted run time
 ROW_COLUMNS = (
@@ -53,7 +57,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Target:
-    """One demand: `least` or `most` of a number."""
+    """One demand: `least` or `most` of a number; neither: it stands there without a verdict."""
 
     what: str
     value: Callable[[Measured], float | None]
@@ -64,15 +68,25 @@ class Target:
     def row(self, measured: Measured) -> dict:
         """Asked, measured, verdict."""
         value = self.value(measured)
-        bound = self.least if self.least is not None else self.most
-        word = "at least" if self.least is not None else "at most"
-        good = value is not None and (value >= bound if self.least is not None else value <= bound)
         return {
             "target": self.what,
-            "asked": f"{word} {bound:g}{self.unit}",
+            "asked": self._asked(),
             "measured": value,
-            "verdict": OPEN if value is None else verdict(good),
+            "verdict": self._verdict(value),
         }
+
+    def _asked(self) -> str:
+        if self.least is None and self.most is None:
+            return f"nothing{',' if self.unit else ''}{self.unit}"
+        word, bound = ("at most", self.most) if self.least is None else ("at least", self.least)
+        return f"{word} {bound:g}{self.unit}"
+
+    def _verdict(self, value: float | None) -> str:
+        if value is None:
+            return OPEN
+        if self.least is None and self.most is None:
+            return NONE
+        return verdict(value >= self.least if self.least is not None else value <= self.most)
 
 
 def speed_rows(inputs: list[Path], data: Path) -> pd.DataFrame:
@@ -109,13 +123,26 @@ def _of_bare(name: str, elements: int) -> Callable[[Measured], float | None]:
     return lambda measured: measured.row(name, elements).get("of_bare_kernel")
 
 
-def _gain(elements: int) -> Callable[[Measured], float | None]:
-    return lambda measured: measured.row("full_step", elements, 2).get("speed_up")
+def _time_with_damping(elements: int) -> Callable[[Measured], float | None]:
+    def value(measured: Measured) -> float | None:
+        undamped, damped = (
+            _of_bare(f"full_step{end}", elements)(measured) for end in ("", "_damped")
+        )
+        return None if undamped is None or damped is None else undamped / damped
+
+    return value
 
 
-def _time_of_two(measured: Measured) -> float | None:
-    gain = _gain(5_000)(measured)
-    return None if gain is None else 1.0 / gain
+def _gain(name: str, elements: int) -> Callable[[Measured], float | None]:
+    return lambda measured: measured.row(name, elements, 2).get("speed_up")
+
+
+def _time_of_two(name: str, elements: int) -> Callable[[Measured], float | None]:
+    def value(measured: Measured) -> float | None:
+        gain = _gain(name, elements)(measured)
+        return None if gain is None else 1.0 / gain
+
+    return value
 
 
 def _returns(measured: Measured) -> float | None:
@@ -127,8 +154,12 @@ def _core_seconds(case: str) -> Callable[[Measured], float | None]:
     return lambda measured: measured.runs.get(case, {}).get("core_seconds")
 
 
-def _memory(measured: Measured) -> float | None:
-    return measured.benchmark.get("memory", {}).get("peak_bytes_per_element")
+def _memory(block: str) -> Callable[[Measured], float | None]:
+    def value(measured: Measured) -> float | None:
+        own = measured.benchmark.get("memory", {}).get(block, {})
+        return own.get("peak_bytes_per_element")
+
+    return value
 
 
 def _other_bits(measured: Measured) -> float | None:
@@ -162,18 +193,39 @@ TARGETS = (
             ("full_step", 0.6, (5_000, 50_000)),
             ("elastic_step", 0.8, (5_000, 50_000)),
             ("full_step_yielding_10", 0.3, (5_000, 50_000)),
-            ("discrete_step_pairs_0.1", 0.25, (5_000, 50_000)),
+            ("discrete_step_pairs_0.1", 0.25, (5_000, 50_000, 200_000)),
+            ("discrete_step_full_0.1", 0.25, (5_000, 50_000, 200_000)),
             ("full_step", 0.5, (200_000,)),
         )
         for elements in sizes
     ),
+    *(
+        Target(
+            f"time of full_step_damped over full_step, {elements:,} elements",
+            _time_with_damping(elements),
+        )
+        for elements in (5_000, 50_000, 200_000)
+    ),
     Target("returns per core-second, every element yielding", _returns, 6.0, unit=" million"),
-    Target("two threads over one, 50,000 elements", _gain(50_000), 1.6),
-    Target("two threads over one, 200,000 elements", _gain(200_000), 1.6),
-    Target("time of two threads over one, 5,000 elements", _time_of_two, most=1.05),
+    *(
+        Target(f"{name}: two threads over one, {elements:,} elements", _gain(name, elements), 1.6)
+        for name in THREADED
+        for elements in (50_000, 200_000)
+    ),
+    *(
+        Target(
+            f"{name}: time of two threads over one, 5,000 elements",
+            _time_of_two(name, 5_000),
+            most=1.05,
+        )
+        for name in THREADED
+    ),
     Target("punch_discrete", _core_seconds("punch_discrete"), most=60.0, unit=" core-seconds"),
     Target("punch_gf60", _core_seconds("punch_gf60"), most=30.0, unit=" core-seconds"),
-    Target("memory at the peak", _memory, most=1000.0, unit=" bytes per element"),
+    *(
+        Target(f"memory at the peak, {block}", _memory(block), most=most, unit=BYTES)
+        for block, most in (("continuum", 1e3), ("discrete_0.1", 1e3), ("discrete_0.5", None))
+    ),
     Target("scenes whose bits hang on what is left out", _other_bits, most=0),
     Target("of an elastic step, all that is not for elements", _unused, most=2.0, unit=" %"),
     Target("predicted over measured time, or its inverse", _prediction, most=WITHIN),
