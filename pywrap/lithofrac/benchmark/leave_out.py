@@ -42,6 +42,7 @@ from lithofrac.scenes import make_mesh, make_problem
 
 WINDOWS = 20
 FAR = 1e6  # [MPa] strength that no stress of a suite reaches
+NO_LIMIT = 1e24  # [MPa] cohesion that sets no scale either (`never`, fortran/material/rock.f90)
 FRAMES = 5
 PROBES = 3
 LEAST_SECONDS, MOST_PAIRS = 0.5, 5  # of a case that is short
@@ -118,7 +119,7 @@ def _checked(material: Material) -> Material:
     far = {
         "compression": True,
         "plastic_strain": (0.0,),
-        "cohesion_MPa": (FAR,),
+        "cohesion_MPa": (NO_LIMIT,),
         "friction_angle_deg": (0.0,),
         "dilation_angle_deg": (0.0,),
         "reference_size_mm": None,
