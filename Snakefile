@@ -28,6 +28,16 @@ def modules(part, *names):
     return [str(file) for file in found]
 
 
+def of(runs, *starts):
+    """Those of some runs whose cases have names that start so."""
+    return [run for run in runs if Path(run).parent.name.startswith(starts)]
+
+
+def named(runs, name):
+    """The run of that name, or nothing where the suite has none."""
+    return [run for run in runs if Path(run).parent.name == name]
+
+
 # Sources that decide a result beside its case: the core, and what a run imports; so its summary
 # says its peak and its fragments by modules of `analysis`.
 CORE = [
@@ -38,7 +48,11 @@ CORE = [
 # Of `config`, but for pages, warnings, and what no case of a suite uses.
 WORDS = ["doubts", "reference", "schema", "setting", "study"]
 CONFIG = [file for file in modules("config") if Path(file).stem not in WORDS]
-SHARED = [*CORE, *CONFIG, *modules("", "errors", "mesh_flaws", "npz", "problem")]
+SHARED = [
+    *CORE,
+    *CONFIG,
+    *modules("", "errors", "mesh_flaws", "npz", "plain_file", "problem"),
+]
 POINT = [*SHARED, *modules("", "kernels", "point")]
 DECIDING = [
     *SHARED,
@@ -61,9 +75,9 @@ RUNS = expand(f"{OUT}/runs/{{case}}/summary.json", case=CASES)
 PAIRED = dict.fromkeys(name for pair in VARIANTS.items() for name in pair)
 PAIRS = expand(f"{OUT}/runs/{{case}}/summary.json", case=PAIRED)
 OWN = [run for run in RUNS if run.split("/")[-2] not in VARIANTS]
-SANDSTONE = [run for run in OWN if "/sandstone_" in run]
+SANDSTONE = of(OWN, "sandstone_")
 DRAWN = ["hole_r25.0", "hole_r16.3", "hole_r06.4"]  # of the paper's Figs 13 and 14
-HOLES = [run for run in OWN if "/hole_" in run]
+HOLES = of(OWN, "hole_")
 INITIATION = [
     f"{OUT}/tables/hole_initiation.csv",
     *HOLES,
@@ -86,7 +100,7 @@ TABLES = {
     **{"zigong": [], "zigong_fit": []},
     "zigong_prediction": ["configs/materials/sandstone.yaml"],
     "zigong_prediction_error": ["configs/materials/sandstone.yaml"],
-    "kirsch": [run for run in RUNS if "/kirsch" in run],
+    "kirsch": of(RUNS, "kirsch"),
     "run_time": ["reports/bands.csv", *RUNS],
     **{"cracks": RUNS, "bands": RUNS, "punch": OWN},
     "variants": [SUITE, *PAIRS],
@@ -100,15 +114,13 @@ TABLES["claims"] += [
     if name in TABLES
 ]
 COMPARED = {
-    "punch": [run for run in OWN if "/punch_" in run],
-    "punch_patterns": [run for run in OWN if "/punch_" in run],
-    "fracture_series": [run for run in OWN if "/sandstone_soft_p" in run],
-    "stiffness_sweep": [
-        run for run in OWN if "/sandstone_plane" in run or "/sandstone_soft" in run
-    ],
-    "fracture_evolution": [run for run in OWN if "/sandstone_plane_strain_p10/" in run],
+    "punch": of(OWN, "punch_"),
+    "punch_patterns": of(OWN, "punch_"),
+    "fracture_series": of(OWN, "sandstone_soft_p"),
+    "stiffness_sweep": of(OWN, "sandstone_plane", "sandstone_soft"),
+    "fracture_evolution": named(OWN, "sandstone_plane_strain_p10"),
     "variants": [SUITE, *PAIRS] if VARIANTS else [],
-    "hole_gauges": [run for run in HOLES if "/hole_r25.0/" in run],
+    "hole_gauges": named(HOLES, "hole_r25.0"),
     "hole_patterns": [run for run in HOLES if run.split("/")[-2] in DRAWN],
     "size_effect": INITIATION if HOLES else [],
 }
@@ -124,15 +136,15 @@ GALLERY = {
     "punch": ("punch", COMPARED["punch"]),
     "fractures_punch_discrete": (
         "fractures",
-        [run for run in RUNS if "/punch_discrete/" in run],
+        named(RUNS, "punch_discrete"),
     ),
     "fractures_punch_tension_only": (
         "fractures",
-        [run for run in RUNS if "/punch_tension_only/" in run],
+        named(RUNS, "punch_tension_only"),
     ),
     "sandstone": (
         "gallery",
-        [run for run in SANDSTONE if "/sandstone_plane_strain_p" in run],
+        of(SANDSTONE, "sandstone_plane_strain_p"),
     ),
     "stress_strain": ("stress_strain", SANDSTONE),
     "strength": ("strength", [*SANDSTONE, *STIFF]),
@@ -287,7 +299,7 @@ rule plot_suite:
     input:
         DRAWING,
         runs=SANDSTONE,
-        gallery=[run for run in SANDSTONE if "/sandstone_plane_strain_p" in run],
+        gallery=of(SANDSTONE, "sandstone_plane_strain_p"),
         stiff=STIFF,
         rock=QUARTZITE,
     output:

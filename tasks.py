@@ -4,7 +4,8 @@
 python3 tasks.py reproduce [--suite FILE] [...]  run the suite, write out/report.html and .md;
                                                  further arguments go to snakemake
 python3 tasks.py test [--all]                    linters, tests on three builds, line coverage;
-                                                 --all adds the tests marked slow
+                                                 --all adds the tests marked slow, and on the
+                                                 special builds those marked one_build
 python3 tasks.py mutants [NAME ...]              break the code on purpose, see which test notices;
                                                  writes reports/mutants.md
 python3 tasks.py setup                           only install what is missing and build
@@ -422,6 +423,15 @@ def test_environment(kind):
     return env
 
 
+def markers_of(kind, everything):
+    """Which tests a build runs, as pytest's -m: all on the release build, on the special builds
+    those that reach the core, and with `everything` those marked one_build too."""
+    left_out = [] if everything and kind == "release" else ["slow"]
+    if kind != "release":
+        left_out += ["no_core"] if everything else ["no_core", "one_build"]
+    return " and ".join(f"not {mark}" for mark in left_out)
+
+
 def run_tests(kind, markers):
     """Build, then pytest; exit code. Words and counts go to build/log/."""
     counts, log = LOG / f"{kind}.xml", LOG / f"{kind}.txt"
@@ -464,7 +474,7 @@ def test(everything):
     failed, checks = lint()
     # Longest first, one lane a core: the last one to start is then the shortest.
     order = ["sanitize", "checked", "release"]
-    markers = ["not slow", "not slow", "" if everything else "not slow"]
+    markers = [markers_of(kind, everything) for kind in order]
     with ThreadPoolExecutor(max_workers=min(3, os.cpu_count() or 1)) as lanes:
         codes = dict(zip(order, lanes.map(run_tests, order, markers), strict=True))
     checks += 1

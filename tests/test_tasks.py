@@ -44,6 +44,22 @@ def calls(tasks, monkeypatch):
     return made
 
 
+@pytest.mark.no_core
+@pytest.mark.parametrize(
+    ("kind", "everything", "markers"),
+    [
+        ("release", False, "not slow"),
+        ("release", True, ""),
+        ("checked", False, "not slow and not no_core and not one_build"),
+        ("sanitize", False, "not slow and not no_core and not one_build"),
+        ("checked", True, "not slow and not no_core"),
+        ("sanitize", True, "not slow and not no_core"),
+    ],
+)
+def test_each_build_runs_what_tells_something_about_it(tasks, kind, everything, markers):
+    assert tasks.markers_of(kind, everything) == markers
+
+
 def run_front(*arguments):
     return subprocess.run(
         [sys.executable, ROOT / "tasks.py", *arguments], capture_output=True, text=True

@@ -10,7 +10,8 @@ module lithofrac_contact_surfaces
    implicit none
    private
 
-   public :: new_surfaces, offset, surfaces_type, tag_edges, update_edges, update_shape
+   public :: list_edges, new_surfaces, offset, surfaces_type, tag_edges, update_edges
+   public :: update_shape
 
    type :: surfaces_type
       integer :: n = 0                          !! boundary nodes, and as many edges

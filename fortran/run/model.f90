@@ -287,8 +287,8 @@ contains
       end if
       call new_contact(model%contact, model%mesh, friction, min(tolerance, &
          needed_tolerance(model%rocks)), status)
-      if (status%code == ok) call refuse_overlap(model%contact%surfaces, model%mesh, &
-         model%origin, status)
+      if (status%code == ok) call refuse_overlap(model%mesh, model%fields%u, model%origin, &
+         "contact", status)
    end subroutine add_contact
 
    !> Tolerance of contact that bodies of these densities ask for, over the usual one.

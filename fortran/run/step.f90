@@ -375,8 +375,8 @@ contains
 
       associate (surfaces => model%contact%surfaces)
          surfaces%u = model%fields%u(:, surfaces%node)
-         call refuse_overlap(surfaces, model%mesh, model%origin, status)
       end associate
+      call refuse_overlap(model%mesh, model%fields%u, model%origin, "contact", status)
       if (status%code /= ok) return
       call bring_masses(model)
       call close_contacts(model, 1, status)

@@ -3,6 +3,7 @@
 module run_face
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use lithofrac_base_status, only: bad_input, ok, set_failure, status_type
+   use lithofrac_contact_overlap, only: refuse_overlap
    use lithofrac_fracture_element_failure, only: set_failure_factors
    use lithofrac_fracture_fragments, only: find_parts
    use lithofrac_material_rock, only: new_rock, rock_type
@@ -22,6 +23,7 @@ module run_face
    public :: run_new, run_drop, run_add_velocity, run_add_pressure, run_set_motion
    public :: run_advance, run_clock, run_energy, run_loads, run_elements, run_nodes
    public :: run_add_contact, run_tag_surface, run_contact_forces, run_contact_statistics
+   public :: run_refuse_overlap
    public :: run_add_fracture, run_sizes, run_mesh, run_parts, run_failure, run_cracks, run_check
    public :: run_checkpoint_size, run_save, run_restore, run_watch
 
@@ -149,6 +151,22 @@ contains
       call add_contact(slots(run)%model, friction, tolerance, status)
       call export_status(status, code, message)
    end subroutine run_add_contact
+
+   !> Fail if parts share some of the plane, whether contact would keep them apart or not.
+   subroutine run_refuse_overlap(run, code, message)
+      integer(c_int), intent(in) :: run
+      integer(c_int), intent(out) :: code
+      character(len=256), intent(out) :: message
+
+      type(status_type) :: status
+
+      call check_handle(run, code, message)
+      if (code /= ok) return
+      associate (model => slots(run)%model)
+         call refuse_overlap(model%mesh, model%fields%u, model%origin, "mesh", status)
+      end associate
+      call export_status(status, code, message)
+   end subroutine run_refuse_overlap
 
    !> Give some edges of the boundary the surface tag `tag`.
    subroutine run_tag_surface(run, edge, n, tag, code, message)

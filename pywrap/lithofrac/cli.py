@@ -57,6 +57,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _one_command(arguments: list[str] | None) -> int:
     options = parser().parse_args(arguments)
     try:
+        _refuse_other_bytes(sys.argv[1:] if arguments is None else arguments)
         return COMMANDS[options.command](options)
     except KeyboardInterrupt:
         _complain("interrupted")
@@ -72,6 +73,23 @@ def _one_command(arguments: list[str] | None) -> int:
         for line in (str(error) or "not enough memory").split("\n"):
             _complain(printable(line))
         return code
+
+
+def _refuse_other_bytes(words: list[str]) -> None:
+    """Refuse words that are not UTF-8, for no Parquet file can be written to such a path.
+
+    Raises
+    ------
+    ConfigError
+        At the first word that Python could not decode.
+    """
+    from lithofrac.config.errors import ConfigError, printable
+
+    for word in words:
+        try:
+            word.encode()
+        except UnicodeEncodeError:
+            raise ConfigError(f"{printable(word)}: is not UTF-8, expected words in UTF-8") from None
 
 
 def _complain(sentence: str) -> None:

@@ -21,6 +21,7 @@ _drop = checked(_face.run_drop)
 _add_velocity = checked(_face.run_add_velocity)
 _add_pressure = checked(_face.run_add_pressure)
 _add_contact = checked(_face.run_add_contact)
+_refuse_overlap = checked(_face.run_refuse_overlap)
 _tag_surface = checked(_face.run_tag_surface)
 _add_fracture = checked(_face.run_add_fracture)
 _sizes = checked(_face.run_sizes)
@@ -202,6 +203,10 @@ class Run:
         if getattr(self, "_handle", 0):
             _drop(self._handle)
             self._handle = 0
+
+    def refuse_overlap(self) -> None:
+        """Raise where parts overlap, even those that no contact will keep apart."""
+        _refuse_overlap(self._handle)
 
     def set_motion(self, displacement: np.ndarray, velocity: np.ndarray) -> None:
         """Start from displacement [m] and velocity [m/s], both (n, 2), at time 0."""

@@ -69,6 +69,15 @@ GUARDS = (
 )
 
 
+# Of what `Watch.arrays` gives, see `results.checkpoint.Layout`.
+LAYOUT = {
+    "guards_scale": ("f8", ()),
+    "guards": ("U", ("guards",)),
+    "guards_first": ("U", ("guards",)),
+    "guards_worst": ("f8", ("guards",)),
+}
+
+
 class Reading(NamedTuple):
     """A value and where it is; -1 for no node or no element."""
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import shutil
 import sys
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -115,11 +116,13 @@ def resumed(options: Namespace, problem: Problem) -> tuple[bool, list[str]]:
     """
     from lithofrac.errors import CheckpointError, CoreError
     from lithofrac.results import checkpoint
+    from lithofrac.run import misfit
 
     if not (options.resume or options.resume_if_possible):
         return False, []
     try:
-        found = checkpoint.read(options.out, checkpoint.fingerprint(problem))
+        mark = checkpoint.fingerprint(problem)
+        found = checkpoint.read(options.out, mark, partial(misfit, problem))
     except CoreError as error:
         if options.resume:
             raise CheckpointError(f"--resume: {error}") from None
@@ -148,6 +151,7 @@ def prepare(out: Path, named: Path, case: Case, mesh: Mesh) -> None:
     """
     from lithofrac.config import ConfigError
     from lithofrac.config.setting import kept, text_of
+    from lithofrac.results import files
     from lithofrac.results.files import OWN_FILES, part_of, write_text, write_whole
 
     copy, (case, beside) = out / "case.yaml", kept(case)
@@ -156,6 +160,13 @@ def prepare(out: Path, named: Path, case: Case, mesh: Mesh) -> None:
     for geometry, source in beside.items():
         if (out / geometry).exists() and source.samefile(out / geometry):
             raise ConfigError(f"--out {out}: the run would replace its geometry {source}")
+    other = files.foreign(out)
+    if other is not None:
+        raise ConfigError(
+            f"--out {out}: the run would replace {other}, which none has made; expected a new or "
+            "empty folder, or one of an earlier run"
+        )
+    write_text(out / files.MARK, files.MARKED)
     for pattern in OWN_FILES:
         for path in (*out.glob(pattern), *out.glob(str(part_of(Path(pattern))))):
             path.unlink()

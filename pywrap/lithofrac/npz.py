@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from lithofrac.errors import FileError
+from lithofrac.plain_file import refuse_other
 
 MOST_BYTES = 1_000_000_000  # unpacked; a mesh of two million elements has 50 million
 
@@ -27,10 +28,7 @@ def arrays_of(path: Path, expected: str) -> dict[str, np.ndarray]:
     FileError
         Where there is no such file or it does not hold arrays of numbers and texts alone.
     """
-    if not path.exists():
-        raise FileError(f"{path}: no such file, expected {expected}")
-    if not path.is_file():
-        raise FileError(f"{path}: is no regular file, expected {expected}")
+    refuse_other(path, expected, MOST_BYTES)
     try:
         with zipfile.ZipFile(path) as file:
             size = sum(member.file_size for member in file.infolist())

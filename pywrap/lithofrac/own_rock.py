@@ -9,7 +9,14 @@ from pathlib import Path
 import numpy as np
 
 from lithofrac.analysis.rock_fit import MOST_TRIALS, RockFit, Unknowns, fit_rock, unknowns
-from lithofrac.analysis.rock_start import Start, elastic_constants, first_table, one_row, table_at
+from lithofrac.analysis.rock_start import (
+    Start,
+    elastic_constants,
+    elastic_errors,
+    first_table,
+    one_row,
+    table_at,
+)
 from lithofrac.config import ConfigError
 from lithofrac.config.errors import suggestion
 from lithofrac.config.material import COLUMNS, Material, find_material
@@ -64,7 +71,7 @@ def fit(
     start, values, given_by_curves = _start(curves, values, knots, source)
     wanted = _unknowns(fitted, start, values, DILATION in given_by_curves, source)
     try:
-        found = fit_rock(wanted, fitted, predicted)
+        found = fit_rock(wanted, fitted, predicted, _errors(curves, given_by_curves))
     except ValueError as error:
         raise ConfigError(f"{tests[0]}: {error}") from None
     read_off = [key for key in given_by_curves if key in ELASTIC]
@@ -146,6 +153,13 @@ def _start(
         return table_at(np.array(knots), *about), values, given
     except ValueError as error:
         raise ConfigError(f"{here}: {error}") from None
+
+
+def _errors(curves: list[Triaxial], given: tuple[str, ...]) -> dict[str, float]:
+    """Standard errors of the elastic constants that the curves give, by key."""
+    young, poisson = elastic_errors(curves) if curves else (0.0, 0.0)
+    return {key: error for key, error in zip(ELASTIC, (1e-3 * young, poisson), strict=True)
+            if key in given}  # fmt: skip
 
 
 def _refuse_missing(values: dict, needed: tuple, source: str) -> None:

@@ -12,11 +12,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 import lithofrac
+from lithofrac import guards
 from lithofrac._build import NATIVE
 from lithofrac.analysis.crack_faces import find_faces
 from lithofrac.analysis.frames import MM, Frame
@@ -44,22 +46,27 @@ def plan(problem: Problem) -> dict:
     dict
         elements, nodes, bodies, time_step_s, steps, expected_seconds (one core), and
         `uses`: feature -> bool.
+
+    Raises
+    ------
+    CoreError
+        Where the core refuses the problem, or parts overlap at the start.
     """
     run = Run(problem)
+    if problem.contact is None:  # which looks for itself
+        run.refuse_overlap()
     elements = len(problem.mesh.triangles)
     steps = math.ceil(problem.end_time / run.dt)
-    yields = any(m.options[3] for m in problem.materials)
-    rate = rate_of(yields, problem.contact is not None, problem.axisymmetric)
     return {
         "elements": elements,
         "nodes": len(problem.mesh.nodes),
         "bodies": len(problem.mesh.body_names),
         "time_step_s": run.dt,
         "steps": steps,
-        "expected_seconds": run_seconds(elements, steps, problem.records, problem.fields, rate),
+        "expected_seconds": expected_seconds(problem, steps),
         "uses": {
             "axisymmetry": problem.axisymmetric,
-            "yield check": yields,
+            "yield check": any(m.options[3] for m in problem.materials),
             "Mohr-Coulomb planes": any(m.options[3] and m.options[2] for m in problem.materials),
             "regularised softening": any(m.reference_width > 0.0 for m in problem.materials),
             "damping": problem.damping.fraction > 0.0 or bool(problem.damping.alpha),
@@ -70,6 +77,15 @@ def plan(problem: Problem) -> dict:
             "field output": problem.fields > 0,
         },
     }
+
+
+def expected_seconds(problem: Problem, steps: int) -> float:
+    """Time that so many steps are expected to take on one core [s]."""
+    confined = any(load.pressure > 0.0 for load in problem.pressure_loads)
+    options = [material.options for material in problem.materials]
+    rate = rate_of(options, problem.contact is not None, problem.axisymmetric, confined)
+    elements = len(problem.mesh.triangles)
+    return run_seconds(elements, steps, problem.records, problem.fields, rate)
 
 
 def simulate(
@@ -125,6 +141,27 @@ def simulate(
         return _to_its_end(session, out, progress)
 
 
+LAYOUT = {
+    "state": ("f8", ("state",)),
+    "clocks": ("f8", (2,)),
+    "frames": ("f8", ("frames",)),
+    "finished": ("b1", ()),
+} | guards.LAYOUT  # of a checkpoint, beside what the recorder keeps
+
+
+def misfit(problem: Problem, arrays: dict[str, np.ndarray]) -> str:
+    """Why the arrays of a checkpoint are not those of a run of `problem`, or nothing."""
+    run = Run(problem)
+    why = checkpoint.misfit(arrays, {**LAYOUT, **Recorder(run).layout()})
+    if why or not len(arrays["history"]):
+        return why or "it holds no record"
+    try:
+        run.restore(arrays["state"])
+    except CoreError as error:
+        return str(error)
+    return ""
+
+
 def _to_its_end(session: _Session, out: Path, progress: Callable[[dict], None] | None) -> dict:
     """Step a session to its end; whatever stops it, the folder says so."""
     try:
@@ -174,7 +211,7 @@ class _Session:
         return self.wall_before + time.perf_counter() - self.wall_start
 
     def resume(self) -> None:
-        found = checkpoint.recover(self.out, self.mark)
+        found = checkpoint.recover(self.out, self.mark, partial(misfit, self.problem))
         arrays = found.arrays
         self.notes += found.notes
         self.run.restore(arrays["state"])
@@ -329,6 +366,7 @@ class _Session:
             "time_step_continuum_s": Run(replace(self.problem, fracture=None)).dt,
             "threads": self.threads,
             "core_seconds": core,
+            "expected_seconds": expected_seconds(self.problem, run.step),
             "wall_seconds": self.wall_seconds,
             "element_steps_per_core_second": elements * run.step / core,
             "energy": {name: finite(value) for name, value in last.items()},

@@ -22,7 +22,7 @@ from pathlib import Path
 from lithofrac.analysis.reading import read_summary
 from lithofrac.analysis.study import check_quantities
 from lithofrac.config.case import Case
-from lithofrac.config.cost import refuse_above_budget
+from lithofrac.config.cost import CUT_STEP, refuse_above_budget
 from lithofrac.config.errors import ConfigError
 from lithofrac.config.gmsh_file import GmshFile
 from lithofrac.config.material import PACKAGED
@@ -114,16 +114,52 @@ def start(
         for folder in (out, out / "cases", out / "log"):
             folder.mkdir(parents=True, exist_ok=True)
         with _alone_in(out):
-            _write_inputs(file, texts, out)
+            costs = own_costs(load_study(file)) if profile else {}
+            _write_inputs(file, texts, out, costs)
             if _snakemake(out, where, quiet, CANCEL if profile else GRACE):
                 raise CoreError(_failures(out, list(texts)))
     except OSError as error:
         raise ConfigError(f"--out {out}: cannot be written ({error.strerror})") from None
 
 
-def _write_inputs(file: Path, texts: dict[str, str], out: Path) -> None:
-    """What the rules read: the study, its cases and a list of them."""
-    jobs = {"cases": list(texts), "core": _mark_of_core()}
+def own_costs(study: Study) -> dict[str, dict]:
+    """What the runs of geometries from files will take, which a scheduler asks: name -> `Cost`.
+
+    Each geometry is meshed once, for its elements and its time step.
+
+    Raises
+    ------
+    ConfigError
+        Where a mesh or its problem is refused, as the run would be.
+    """
+    from lithofrac.run import plan
+    from lithofrac.scenes import make_mesh, make_problem
+
+    meshes: dict = {}
+    found = {}
+    for name in study.names:
+        case = study.case(name)
+        if not isinstance(case.scene, GmshFile):
+            continue
+        key = case.scene.path.resolve(), case.scene.length_unit, case.mesh.seed
+        try:
+            if key not in meshes:
+                meshes[key] = make_mesh(case)
+            expected = plan(make_problem(case, meshes[key]))
+        except (ConfigError, CoreError) as error:
+            raise ConfigError(f"{error} (run {name})") from None
+        shrinks = CUT_STEP if case.fracture.mode == "intra_element" else 1.0
+        found[name] = {
+            "elements": expected["elements"],
+            "steps": expected["steps"] / shrinks,
+            "seconds": expected["expected_seconds"] / shrinks,
+        }
+    return found
+
+
+def _write_inputs(file: Path, texts: dict[str, str], out: Path, costs: dict) -> None:
+    """What the rules read: the study, its cases, and a list of them with what is known of some."""
+    jobs = {"cases": list(texts), "core": _mark_of_core(), "costs": costs}
     for name, text in texts.items():
         _write_if_new(out / "cases" / f"{name}.yaml", text)
         _forget_unfinished(out / "runs" / name / "summary.json")

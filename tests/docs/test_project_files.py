@@ -26,7 +26,7 @@ def test_one_version():
 def test_one_licence():
     assert (ROOT / "LICENSE").read_text().startswith("BSD 3-Clause License\n")
     meson = re.search(r"license: '([^']+)'", (ROOT / "meson.build").read_text())
-    assert {PROJECT["license"]["text"], CITATION["license"], meson[1]} == {"BSD-3-Clause"}
+    assert {PROJECT["license"], CITATION["license"], meson[1]} == {"BSD-3-Clause"}
 
 
 def test_citation_has_what_the_format_asks_for():
@@ -35,6 +35,13 @@ def test_citation_has_what_the_format_asks_for():
     assert CITATION["cff-version"] == "1.2.0"
     (paper,) = CITATION["references"]
     assert {"type", "title", "authors", "journal", "volume", "start", "end", "year"} <= paper.keys()
+
+
+def test_citation_is_dated_by_the_release_alone():
+    """Unreleased: no date, no DOI. A release adds both dates at once."""
+    released = re.search(r"^## \S+ - (\S+)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[1]
+    assert str(CITATION.get("date-released", "unreleased")) == released
+    assert "doi" not in CITATION or released != "unreleased"
 
 
 def test_changes_have_the_headings_of_their_format():

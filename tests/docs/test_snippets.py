@@ -2,16 +2,10 @@
 
 A page is one session: its fenced blocks are taken in order, in a temporary folder that has the
 configs and the data of the checkout; that of a project, in the folder of the project. Words behind
-the language of a block say more:
-
-exists : commands are not run; program, command and options must exist
-slow : so in the quick run (Python is compiled); run with the tests marked slow
-add="..." : words that each `lithofrac run` and `study` of the block gets, to be short
-file=NAME : the block is saved there
+the language of a block say more: pages.py. Those that set up, build or submit are run by
+test_clone.py; here their programs, commands and options must exist.
 
 Commands of lithofrac run in this process, through `main`: starting forty would take a minute.
-Blocks are read by markdown-it, which the report needs anyway; no kept library runs shell, YAML
-and Python of one page in one session.
 """
 
 import contextlib
@@ -23,11 +17,10 @@ import shlex
 import shutil
 import subprocess
 import sys
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from markdown_it import MarkdownIt
+from pages import FLAGS, OPTIONS, PAGES, ROOT, Block, blocks, commands, name_of, spans
 
 from lithofrac.arguments import parser
 from lithofrac.cli import COMMANDS, main
@@ -35,59 +28,9 @@ from lithofrac.config.yaml_file import read_yaml
 
 pytestmark = pytest.mark.no_core  # it runs cases, but what is tested is not the build of the core
 
-ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
-PAGES += sorted((ROOT / "reports" / "guide").glob("*.md"))
-PAGES += sorted(page for top in ("configs", "data") for page in (ROOT / top).rglob("*.md"))
 RULES = [ROOT / "Snakefile", *(ROOT / "pywrap" / "rules").glob("*.smk")]
-FLAGS, OPTIONS = {"exists", "slow"}, {"add", "file"}
-ASSIGNMENT = re.compile(r"[A-Z_]+=.*\Z")
 TARGET = re.compile(r"[a-z_]+\Z")
-
-
-@dataclass(frozen=True)
-class Block:
-    """One fenced block of a page."""
-
-    page: Path
-    line: int
-    language: str
-    text: str
-    flags: frozenset = frozenset()
-    options: dict = field(default_factory=dict)
-
-    def __str__(self) -> str:
-        return f"{self.page.relative_to(ROOT)}:{self.line}"
-
-
-def blocks(page):
-    """Fenced blocks of a page in order."""
-    for token in MarkdownIt().parse(page.read_text(encoding="utf-8")):
-        if token.type != "fence":
-            continue
-        language, *words = shlex.split(token.info) or [""]
-        pairs = dict(word.split("=", 1) for word in words if "=" in word)
-        flags = frozenset(word for word in words if "=" not in word)
-        yield Block(page, token.map[0] + 1, language, token.content, flags, pairs)
-
-
-def spans(page):
-    """Inline code of a page: (line, text)."""
-    for token in MarkdownIt().enable("table").parse(page.read_text(encoding="utf-8")):
-        for child in token.children or ():
-            if child.type == "code_inline":
-                yield token.map[0] + 1, child.content
-
-
-def commands(text):
-    """Words of each command of a shell block."""
-    for line in text.replace("\\\n", " ").splitlines():
-        for part in line.split("&&"):
-            words = shlex.split(part, comments=True)
-            while words and ASSIGNMENT.match(words[0]):
-                words = words[1:]
-            if words:
-                yield words
+ELSEWHERE = {"clone", "itself"}  # not run in this session
 
 
 def subparser(command):
@@ -131,7 +74,9 @@ def check_snakemake(words, whole=True):
 
 
 def check_python(words, whole=True):
-    """`python3 tasks.py TASK`, or a command that the Slurm of the tests is started for."""
+    """A task of tasks.py, `-m venv`, or a command that the Slurm of the tests is started for."""
+    if words[:2] == ["-m", "venv"]:
+        return
     if words[:1] == ["tests/slurm/one_node.py"]:
         CHECKS[words[1]](words[2:], whole)
         return
@@ -153,12 +98,30 @@ CHECKS = {
 }
 
 
+class Readings:
+    """Files that this process opens for reading, while somebody listens."""
+
+    def __init__(self):
+        self.of: set | None = None
+
+    def __call__(self, event, arguments):
+        if event == "open" and self.of is not None and isinstance(arguments[0], (str, os.PathLike)):
+            if not set(arguments[1] or "r") & set("wax"):
+                self.of.add(os.path.abspath(arguments[0]))
+
+
+READINGS = Readings()
+sys.addaudithook(READINGS)  # one for all tests, as none is ever taken away
+
+
 class Session:
     """A reader at work on one page."""
 
     def __init__(self, folder, monkeypatch, slow):
         self.folder, self.monkeypatch, self.slow = folder, monkeypatch, slow
         self.names: dict = {"__name__": "page"}
+        self.saved: dict = {}  # path -> block
+        self.read: set = set()  # paths that commands and Python have read
 
     def take(self, block):
         """Do what a block says."""
@@ -177,7 +140,8 @@ class Session:
         elif language == "python":
             code = compile(block.text, str(block), "exec")
             if self.slow or "slow" not in block.flags:
-                exec(code, self.names)
+                with self.listening():
+                    exec(code, self.names)
         else:
             pytest.fail(f"{block}: a block in {language or 'no language'} that nothing runs")
 
@@ -186,29 +150,48 @@ class Session:
         path = Path(block.options["file"])
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(block.text, encoding="utf-8")
+        self.saved[str(path.absolute())] = block
         if path.suffix == ".yaml":
             read_yaml(path)
+
+    @contextlib.contextmanager
+    def listening(self):
+        """Note which files are read."""
+        READINGS.of = self.read
+        try:
+            yield
+        finally:
+            READINGS.of = None
+
+    def unread(self):
+        """Saved files that nothing has read."""
+        return [f"{block}: {path}" for path, block in self.saved.items() if path not in self.read]
 
     def run(self, block, words):
         """One command; returns what it printed."""
         program, *rest = words
-        if "exists" in block.flags or ("slow" in block.flags and not self.slow):
+        if block.flags & ELSEWHERE or ("slow" in block.flags and not self.slow):
+            program = Path(program).name or program  # own/bin/pip
             assert program in CHECKS, f"{block}: {program}: nobody knows how to check it"
             CHECKS[program](rest)
+            if "clone" in block.flags:  # which see to it that the files are there
+                self.read |= {path for path in self.saved if Path(path).name in block.text}
             return ""
         if program == "cd":
             self.monkeypatch.chdir(*rest)
             return ""
         if program == "sh":
             done = subprocess.run(words, capture_output=True, text=True, timeout=600)
+            self.read.add(os.path.abspath(rest[0]))
             assert done.returncode == 0, f"{block}: {shlex.join(words)}: {done.stderr}"
             return done.stdout
-        assert program == "lithofrac", f"{block}: {program}: expected lithofrac, or `exists`"
+        assert program == "lithofrac", f"{block}: {program}: expected lithofrac, or `clone`"
         if rest[0] in ("run", "study"):
             rest += shlex.split(block.options.get("add", ""))
         rest = [file for word in rest for file in expanded(word)]
         out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        streams = contextlib.redirect_stdout(out), contextlib.redirect_stderr(err)
+        with streams[0], streams[1], self.listening():
             try:
                 code = main(rest)
             except SystemExit as ended:  # --version
@@ -252,15 +235,12 @@ def reader(tmp_path, monkeypatch):
     return start
 
 
-def name_of(page):
-    return page.relative_to(ROOT).as_posix()
-
-
 @pytest.mark.parametrize("page", [page for page in PAGES if any(blocks(page))], ids=name_of)
 def test_a_page_does_what_it_says(page, reader):
     session = reader(page, slow=False)
     for block in blocks(page):
         session.take(block)
+    assert not session.unread(), "saved and not read by any command of the page"
 
 
 @pytest.mark.slow
@@ -325,11 +305,22 @@ def test_the_reader_refuses_what_nothing_runs(reader):
     for block in (
         Block(page, 1, "yaml", "a: 1"),
         Block(page, 1, "sh", "rm -r out"),
-        Block(page, 1, "sh", "lithofrac frobnicate", frozenset({"exists"})),
-        Block(page, 1, "sh", "python3 tasks.py frobnicate", frozenset({"exists"})),
-        Block(page, 1, "sh", "snakemake frobnicate", frozenset({"exists"})),
+        Block(page, 1, "sh", "lithofrac frobnicate", frozenset({"clone"})),
+        Block(page, 1, "sh", "python3 tasks.py frobnicate", frozenset({"clone"})),
+        Block(page, 1, "sh", "snakemake frobnicate", frozenset({"clone"})),
         Block(page, 1, "sh", "lithofrac plot x --out x.svg", frozenset({"exits"})),
         Block(page, 1, "console", "$ lithofrac --version\nno such line\n"),
     ):
         with pytest.raises((AssertionError, pytest.fail.Exception)):
             session.take(block)
+
+
+def test_a_saved_file_that_nothing_reads_is_found(reader):
+    page = PAGES[0]
+    session = reader(page, slow=False)
+    text = "confinement_MPa,strength_MPa\n0,50\n10,90\n"
+    for name in ("read.csv", "forgotten.csv"):
+        session.take(Block(page, 1, "csv", text, options={"file": name}))
+    session.take(Block(page, 5, "python", 'lines = open("read.csv").readlines()'))
+    (found,) = session.unread()
+    assert found.endswith("forgotten.csv")

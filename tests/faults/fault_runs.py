@@ -10,6 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from lithofrac.results.files import MARK
+
 ROOT = Path(__file__).parents[2]
 LITHOFRAC = [sys.executable, "-m", "lithofrac"]
 RECORDS = 60
@@ -106,7 +108,7 @@ def assert_same(one: Path, two: Path) -> None:
     for found in both:
         for name in ("checkpoint.npz", "checkpoint_previous.npz", "summary.json"):
             found.pop(name, None)
-        assert not [name for name in found if Path(name).name.startswith(".")]
+        assert [name for name in found if Path(name).name.startswith(".")] == [MARK]
     assert both[0].keys() == both[1].keys()
     for name, content in both[0].items():
         assert content == both[1][name], name

@@ -9,7 +9,7 @@ from fault_runs import assert_same, files
 from lithofrac.cli import main
 from lithofrac.results.checkpoint import FORMAT, NAME, PREVIOUS
 
-pytestmark = [pytest.mark.restart, pytest.mark.one_build]
+pytestmark = pytest.mark.restart
 
 
 def cut(path):

@@ -12,7 +12,6 @@ from fault_runs import LITHOFRAC, assert_same
 from lithofrac.cli import main
 from lithofrac.config import load_suite
 
-pytestmark = pytest.mark.one_build
 SOURCES = Path("/usr/share/i18n/locales/de_DE")
 
 
@@ -55,6 +54,7 @@ def test_locale_changes_no_bit(cracking, unbroken, german, tmp_path):
     assert_same(unbroken, out)
 
 
+@pytest.mark.no_core
 @pytest.mark.parametrize("name", ["kirsch", "bar_wave"])
 def test_locale_changes_no_mesh(german, tmp_path, name):
     """gmsh is a program of its own, with its own way to read and write numbers."""

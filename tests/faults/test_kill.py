@@ -7,6 +7,7 @@ import sys
 import pytest
 from fault_runs import assert_same
 
+# As in test_disk.py; a process that is killed has no say in how.
 pytestmark = [pytest.mark.restart, pytest.mark.one_build]
 
 

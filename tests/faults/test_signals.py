@@ -2,15 +2,18 @@
 
 import os
 import signal
+import subprocess
+import sys
 import time
+import tomllib
 
 import pytest
-from fault_runs import assert_same, summary
+from fault_runs import LITHOFRAC, ROOT, assert_same, summary
 
 from lithofrac.cli import main
 from lithofrac.results.recorder import Recorder
 
-pytestmark = [pytest.mark.restart, pytest.mark.one_build]
+pytestmark = pytest.mark.restart
 SIGNALS = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 
 
@@ -70,6 +73,49 @@ def test_stopped_before_its_first_record_it_has_nothing_to_keep_and_says_so(
     assert capsys.readouterr().err == "lithofrac: interrupted\n"
     assert not (out / "summary.json").exists()
     assert not list(out.glob("checkpoint*"))
+
+
+# Read by Python before anything else: Ctrl-C as a module is about to be imported, within a line of
+# Python or within a text that is executed, which Python itself takes down in another way.
+EARLY = """
+import signal, sys
+
+class Early:
+    def find_spec(self, name, *_):
+        if name == {module!r}:
+            {line}
+
+sys.meta_path.insert(0, Early())
+"""
+
+
+def installed() -> list[str]:
+    """What pip writes into the `lithofrac` on the path."""
+    named = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["scripts"]["lithofrac"]
+    module, function = named.split(":")
+    return [
+        sys.executable,
+        "-c",
+        f"import sys; from {module} import {function} as main; sys.exit(main())",
+    ]
+
+
+@pytest.mark.no_core  # it ends before the core is there
+@pytest.mark.parametrize(
+    "line",
+    ["signal.raise_signal(signal.SIGINT)", "exec('signal.raise_signal(signal.SIGINT)')"],
+    ids=["line", "text"],
+)
+@pytest.mark.parametrize("module", ["lithofrac.cli", "argparse", "lithofrac.intake", "pydantic"])
+@pytest.mark.parametrize("start", [LITHOFRAC, installed()], ids=["module", "script"])
+def test_ctrl_c_while_modules_are_imported_is_one_sentence(tmp_path, start, module, line):
+    (tmp_path / "sitecustomize.py").write_text(EARLY.format(module=module, line=line))
+    before = [path for path in (os.environ.get("PYTHONPATH"),) if path]
+    variables = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *before])}
+    done = subprocess.run(
+        [*start, "check", "bar_wave"], env=variables, capture_output=True, text=True, timeout=60
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "lithofrac: interrupted\n")
 
 
 @pytest.mark.slow

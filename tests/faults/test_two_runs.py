@@ -7,7 +7,7 @@ from fault_runs import assert_same, wait_for_checkpoints
 
 from lithofrac.cli import main
 
-pytestmark = pytest.mark.one_build
+pytestmark = pytest.mark.one_build  # as in test_disk.py; what is tested is the lock
 
 
 @pytest.mark.parametrize("how", [[], ["--resume"], ["--resume-if-possible"]])

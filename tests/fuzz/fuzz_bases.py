@@ -116,6 +116,7 @@ CASES = {
     + CRACKS.replace("MODE", "inter_element")
     + MORE,
 }
+CHECKPOINTS = ("bar", "triaxial")  # cases of which a run in its middle is kept
 MESHED = ("hole_quarter", "hole", "punch", "brazilian")
 
 SUITE = """\

@@ -10,7 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import yaml
-from fuzz_bases import CASES, DATA, MATERIALS, MESHED, OTHER_MSH, OWN, STUDY, SUITE
+from fuzz_bases import CASES, CHECKPOINTS, DATA, MATERIALS, MESHED, OTHER_MSH, OWN, STUDY, SUITE
+
+from lithofrac.results.checkpoint import _digest
 
 WORDS = (
     b"nan", b".nan", b".inf", b"-.inf", b"1e400", b"-1e400", b"1e-400", b"9" * 400, b"-0", b"0x10",
@@ -82,9 +84,16 @@ MORE_KEYS = {
     "compression": ("material", (False,)),
     "reference_size_mm": ("material", (0.1, 2.0, 100.0)),
 }
+LOOPS = (
+    b"For i In {1:1e15}\na = i;\nEndFor", b"For i In {1:9}\na = i;",
+    b"Macro M\nCall M;\nReturn\nCall M;",
+    b"If (1)", b"a[] = {1:1e9};", b"Mesh.MeshSizeFactor = 1e-9;", b"Exit;", b"Abort;",
+    b"Mesh.Algorithm = 99;", b"Delete Model;", b"Physical Curve(\"a\") = {1:1e6};",
+)  # fmt: skip
 CELLS = (
     b"", b"-1", b"0", b"1", b"2", b"3", b"7", b"13", b"99", b"0.5", b"1e308", b"abc", b"4294967297",
 )  # fmt: skip
+MORE = 1_000_000  # from this seed on: checkpoints and scripts of gmsh
 KINDS = (*CASES, "velocity", "traction", "boundaries")
 
 
@@ -105,6 +114,8 @@ class Mutant:
 def mutant(seed: int, meshes: dict[str, bytes]) -> Mutant:
     """The mutant of a seed; `meshes` holds the right mesh of every case, as an .npz."""
     choose = random.Random(seed)
+    if seed >= MORE:
+        return choose.choice((_checkpoint, _checkpoint, _geo))(seed, choose, meshes)
     makers = (_case, _material, _suite, _mesh, _own, _data)
     make = choose.choices(makers, weights=(34, 16, 6, 22, 13, 9))[0]
     return make(seed, choose, meshes)
@@ -168,6 +179,39 @@ def _own(seed: int, choose: random.Random, meshes: dict[str, bytes]) -> Mutant:
         mesh, how = _bytes(mesh, choose), "bytes"
     files = _folder() | {"case.yaml": case, "own.msh": mesh}
     return Mutant(seed, f"own {file}, {how}", files, ("check", "case.yaml"))
+
+
+def _geo(seed: int, choose: random.Random, meshes: dict[str, bytes]) -> Mutant:
+    """A script of gmsh, which has most of a second and may hold loops."""
+    script, how = meshes["own.geo"], "bytes"
+    if choose.random() < 0.4:
+        script, how = _cells(script, choose, b" "), "cells"
+    elif choose.random() < 0.3:
+        lines = script.splitlines()
+        lines.insert(choose.randrange(len(lines)), choose.choice(LOOPS))
+        script, how = b"\n".join(lines), "loop"
+    else:
+        script = _bytes(script, choose)
+    case = OWN.encode().replace(b"own.msh", b"own.geo")
+    files = _folder() | {"case.yaml": case, "own.geo": script}
+    return Mutant(seed, f"own.geo, {how}", files, ("check", "case.yaml"))
+
+
+def _checkpoint(seed: int, choose: random.Random, meshes: dict[str, bytes]) -> Mutant:
+    """A checkpoint that a run is to go on from; with the right check sum where arrays change."""
+    name = choose.choice(CHECKPOINTS)
+    content, how = meshes[f"{name}.checkpoint"], "bytes"
+    if choose.random() < 0.5:
+        content = _bytes(content, choose)
+    else:
+        content, how = _arrays(content, choose, FORGERIES, forged=True)
+    files = _folder() | {
+        "case.yaml": CASES[name].encode(),
+        "results/mesh.npz": meshes[name],
+    }
+    words = ("run", "case.yaml", "--resume")
+    files["results/checkpoint.npz"] = content
+    return Mutant(seed, f"checkpoint of {name}, {how}", files, words)
 
 
 def _data(seed: int, choose: random.Random, meshes: dict[str, bytes]) -> Mutant:
@@ -337,19 +381,25 @@ def _scaled(value, choose: random.Random):
 # ---------------------------------------------------------------- meshes
 
 
-def _arrays(content: bytes, choose: random.Random) -> tuple[bytes, str]:
-    """Change arrays of a mesh and write a whole .npz; its bytes and how it was made."""
+def _arrays(
+    content: bytes, choose: random.Random, changes: tuple = (), forged: bool = False
+) -> tuple[bytes, str]:
+    """Change arrays of a mesh, or of a checkpoint that is `forged`, and write a whole .npz; its
+    bytes and how it was made."""
     with np.load(io.BytesIO(content)) as file:
         arrays = {name: file[name] for name in file}
     random_numbers = np.random.default_rng(choose.getrandbits(32))
     names = []
     for _ in range(choose.choice((1, 1, 1, 1, 2, 3))):
-        change = choose.choice(CHANGES)
+        change = choose.choice(changes or CHANGES)
         try:
             change(arrays, choose, random_numbers)
         except (ArithmeticError, KeyError, IndexError, TypeError, ValueError):
             continue  # a change before this one left nothing to change
         names.append(change.__name__.strip("_"))
+    if forged:
+        arrays.pop("digest", None)
+        arrays["digest"] = np.array(_digest(arrays))
     with io.BytesIO() as file:
         np.savez(file, **arrays)
         return file.getvalue(), "+".join(names) or "as it is"
@@ -491,3 +541,5 @@ CHANGES = (
     _element_gone_with_its_nodes, _element_gone_with_its_nodes, _permuted, _array_gone,
     _array_renamed, _other_type, _other_shape, _object_inside, _bodies, _body_moved, _body_moved,
 )  # fmt: skip
+# Of checkpoints: what a run looks at before it goes on.
+FORGERIES = (_array_gone, _array_gone, _array_renamed, _other_type, _other_shape, _object_inside)

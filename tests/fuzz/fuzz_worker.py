@@ -1,9 +1,10 @@
 """One process that tries mutants: seeds come in on standard input, verdicts go out as JSON.
 
-A verdict is `result` (checked and run), `large` (right, but more than is run here), `refused`
-(exit code 2) or `stopped` (exit code 3), each with sentences; or a failure: `traceback`, `nan`,
-`words` (no clear sentence), `written` (files where none should be). Its parent adds `hang` and
-`crash`. The folder of the right meshes is the only argument.
+A verdict is `result` (checked and run), `large` (a right case within its budget of element-steps,
+but of more than 20,000 elements, which are not run here: above its budget it has to be refused in a
+sentence like any other), `refused` (exit code 2) or `stopped` (exit code 3), each with sentences;
+or a failure: `traceback`, `nan`, `words` (no clear sentence), `written` (files where none should
+be). Its parent adds `hang` and `crash`. The folder of the right meshes is the only argument.
 """
 
 import contextlib
@@ -23,7 +24,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pandas as pd
-from fuzz_bases import CASES, MATERIALS, OTHER_MSH, OWN, OWN_GEO, own_msh
+from fuzz_bases import CASES, CHECKPOINTS, MATERIALS, OTHER_MSH, OWN, OWN_GEO, own_msh
 from fuzz_mutants import Mutant, mutant
 
 from lithofrac import cli
@@ -34,18 +35,20 @@ from lithofrac.config.study import load_study
 from lithofrac.data import load_curves, measured_strength
 from lithofrac.data.axes import load_axes
 from lithofrac.data.triaxial import load_triaxial
+from lithofrac.intake import within_budget
 from lithofrac.scenes import _gmsh, make_mesh
 
 GOOD = ("result", "large", "refused", "stopped")
 MOST_ELEMENTS, MOST_STEPS = 20_000, 100
 PROGRESS = re.compile(r"[\w.@-]+: (warning: |step \d+ of \d+ )")
 MOST_LETTERS = 1500  # of a sentence: one may list all keys of a section
+SCRIPT_SECONDS = 20.0  # for gmsh on a script
 MOST_MEMORY = 6_000_000_000
 WITH_PLATENS = ("plane_strain", "punch", "brazilian", "hole")
 
 
 class TooLarge(Exception):
-    """More elements than are run here."""
+    """More elements than are run here, though a run would take them."""
 
 
 class Failure(Exception):
@@ -64,13 +67,14 @@ def limit_runs() -> None:
         if case.platens is not None and case.scene.kind in WITH_PLATENS:
             count += platen_count(case.scene, case.platens)
         if count > MOST_ELEMENTS:
-            raise TooLarge
+            within_budget(arguments[0], case)
+            raise TooLarge(f"{count} elements by prediction")
         return case
 
     def short(*arguments):
-        problem, expected = accepted(*arguments)
+        problem, expected = accepted(*arguments)  # which holds it against its budget
         if len(problem.mesh.triangles) > MOST_ELEMENTS:
-            raise TooLarge
+            raise TooLarge(f"{len(problem.mesh.triangles)} elements")
         end = min(problem.end_time, (MOST_STEPS - 0.5) * expected["time_step_s"])
         few = {"records": min(problem.records, 20), "fields": min(problem.fields, 2)}
         return replace(problem, end_time=end, **few), expected
@@ -79,7 +83,7 @@ def limit_runs() -> None:
 
 
 def write_meshes(folder: str) -> None:
-    """The right mesh of every case of `fuzz_bases`, as NAME.npz, and .msh files."""
+    """The right mesh of every case of `fuzz_bases`, as NAME.npz, .msh files, and checkpoints."""
     Path(folder, "own_22.msh").write_text(own_msh())
     Path(folder, "own.geo").write_text(OWN_GEO)
     for file, options in OTHER_MSH.items():
@@ -92,12 +96,24 @@ def write_meshes(folder: str) -> None:
         for case, text in {**CASES, "own": OWN}.items():
             (Path(name) / "case.yaml").write_text(text)
             make_mesh(load_case(Path(name) / "case.yaml")).save(Path(folder, f"{case}.npz"))
+        limit_runs()
+        for case in CHECKPOINTS:
+            (Path(name) / "case.yaml").write_text(CASES[case])
+            out = Path(folder, f"run_{case}")
+            words = ["run", f"{name}/case.yaml", "--mesh", f"{folder}/{case}.npz", "--quiet"]
+            often = ["--set", "output.checkpoint_seconds=0"]
+            if cli.main([*words, *often, "--out", str(out)]):
+                raise RuntimeError(f"{case} cannot be run")
+            (out / "checkpoint_previous.npz").rename(Path(folder, f"{case}.checkpoint"))
 
 
 def read_meshes(folder: Path) -> dict[str, bytes]:
     """What `write_meshes` wrote: name of a case, or of a .msh -> content."""
     cases = {path.stem: path.read_bytes() for path in folder.glob("*.npz")}
-    return cases | {path.name: path.read_bytes() for path in folder.glob("*.msh")}
+    others = [
+        path for suffix in ("msh", "geo", "checkpoint") for path in folder.glob(f"*.{suffix}")
+    ]
+    return cases | {path.name: path.read_bytes() for path in others}
 
 
 def verdict(found: Mutant) -> dict:
@@ -136,8 +152,8 @@ def _tried(found: Mutant, top: Path) -> tuple[str, str]:
                 return ("refused" if code == 2 else "stopped"), said
             words[0] = "run"
         code, said = _call(lambda: cli.main([*words, "--out", "results"]))
-    except TooLarge:
-        return "large", ""
+    except TooLarge as large:
+        return "large", str(large)
     _judge_words(code, said)
     _judge_files(code, before, top)
     return {0: "result", 2: "refused", 3: "stopped"}[code], said
@@ -213,10 +229,11 @@ def _judge_files(code: int, before: dict, top: Path) -> None:
     """A refusal leaves nothing; a run leaves whole files in its folder alone, without a NaN."""
     after = _tree(top)
     results = {name: after.pop(name) for name in list(after) if name.startswith("in/results")}
+    old = {name: before.pop(name) for name in list(before) if name.startswith("in/results")}
     if after != before:
         raise Failure("written", f"outside of the results: {sorted(set(after) ^ set(before))}")
-    if code == 2 and results:
-        raise Failure("written", f"refused, and yet {sorted(results)}")
+    if code == 2 and results != old:
+        raise Failure("written", f"refused, and yet {sorted(set(results) ^ set(old)) or 'changed'}")
     half = [name for name in results if ".part" in Path(name).name]
     if half:
         raise Failure("written", f"half-written {half}")
@@ -256,6 +273,7 @@ def main(meshes: Path) -> None:
     answers = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what compiled parts print is no answer
     limit_runs()
+    _gmsh.OWN_TIME_LIMIT = SCRIPT_SECONDS
     right = read_meshes(meshes)
     for line in sys.stdin:
         print(json.dumps(verdict(mutant(int(line), right))), file=answers)

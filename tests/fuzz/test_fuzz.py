@@ -8,6 +8,7 @@ from collections import Counter
 
 import pytest
 from fuzz_campaign import GOOD, campaign, failures
+from fuzz_mutants import MORE
 
 
 def assert_all_well(verdicts: list[dict], count: int) -> None:
@@ -22,6 +23,14 @@ def assert_all_well(verdicts: list[dict], count: int) -> None:
 def test_some_mutants_end_in_a_result_or_a_sentence(n_random):
     count = n_random(300, least=40)
     assert_all_well(campaign(0, count), count)
+
+
+def test_checkpoints_and_scripts_end_in_a_result_or_a_sentence(n_random):
+    count = n_random(24, least=6)
+    found = campaign(MORE, count)
+    print(dict(Counter(verdict["kind"] for verdict in found)))
+    assert not failures(found), failures(found)
+    assert {verdict["kind"] for verdict in found} >= {"refused"}
 
 
 @pytest.mark.slow

@@ -41,6 +41,18 @@ def test_a_right_case_ends_in_a_result_of_few_steps(verdict):
     assert "step 10 of 10" in found["detail"]
 
 
+def test_a_case_that_is_too_large_to_run_here_is_refused_above_its_budget(verdict, monkeypatch):
+    monkeypatch.setattr(fuzz_worker, "MOST_ELEMENTS", 5)
+    found = verdict()
+    assert found["kind"] == "large"
+    assert found["detail"].endswith(" elements by prediction")
+    text = b"budget_element_steps: 10.0\n" + RIGHT.files["case.yaml"]
+    monkeypatch.setitem(RIGHT.files, "case.yaml", text)
+    found = verdict()
+    assert found["kind"] == "refused"
+    assert "budget_element_steps = 10" in found["detail"]
+
+
 def test_a_seed_always_gives_the_same_mutant():
     meshes = {name: bytes(range(200)) for name in (*CASES, "own", "own_22.msh", *OTHER_MSH)}
     texts = [seed for seed in range(60) if not _reads_a_mesh(seed, meshes)]

@@ -172,11 +172,12 @@ def force_at_the_mouth(crossing):
     sides = [[np.cos(lean), np.sin(lean)] for lean in np.radians([110.0, 170.0])]
     wedge = replace(rectangle(1, 1), nodes=tip + np.array([[0.0, 0.0], *sides]), edge_sets={})
     wedge = replace(wedge, triangles=np.array([[0, 1, 2]], np.int32), body=np.zeros(1, np.int32))
-    mesh = join(block=block, wedge=wedge)
+    mesh = join(block=block, wedge=moved(wedge, (0.0, h)))  # where it overlaps with nothing
     left, right = np.flatnonzero((abs(mesh.nodes) < 1e-9).all(axis=1))
     displacement = np.zeros_like(mesh.nodes)
     displacement[left, 1] = -0.05 * h
     displacement[right, 0] = -crossing * h
+    displacement[-3:, 1] = -h
     run = Run(contact_problem(mesh))
     run.set_motion(displacement, 0 * displacement)
     run.advance(1)

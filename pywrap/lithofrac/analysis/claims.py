@@ -15,9 +15,12 @@ from lithofrac.analysis.claims_sandstone import SANDSTONE
 from lithofrac.analysis.runs import find_runs
 from lithofrac.analysis.verdict import FAILS, HOLDS, OPEN, verdict
 from lithofrac.data import DataError
+from lithofrac.data.csv_file import read_columns
 
 CHECKS: dict[str, Check] = {**PUNCH, **SANDSTONE, **HOLE}
 BANDS = "claims_bands"  # stem of the file of bands; all other CSV inputs are tables
+BAND_COLUMNS = ("claim", "measure", "quantity", "least", "most", "unit")
+STATED_COLUMNS = ("claim", "figure", "statement")
 COLUMNS = (
     "claim", "figure", "statement", "quantity", "value", "band", "verdict", "note", "drawn",
 )  # fmt: skip
@@ -40,11 +43,18 @@ def claims(inputs: list[Path], data: Path) -> pd.DataFrame:
     files = {path.stem: path for path in paths if path.suffix == ".csv"}
     if BANDS not in files:
         raise DataError(f"claims: no {BANDS}.csv among the inputs, expected the bands")
-    bands = pd.read_csv(files.pop(BANDS))
+    bands = read_columns(
+        files.pop(BANDS), BAND_COLUMNS, "bands of the claims", ("least", "most"), empty=True
+    )
     runs = find_runs([path for path in paths if path.suffix != ".csv"])
-    tables = {name: pd.read_csv(path) for name, path in files.items()}
+    tables = {
+        name: read_columns(path, (), "a table of the pipeline", empty=True)
+        for name, path in files.items()
+    }
     source = Source({run.name: run for run in runs}, tables, data)
-    stated = pd.read_csv(data / "klerck2004" / "claims.csv", dtype={"figure": str})
+    stated = read_columns(
+        data / "klerck2004" / "claims.csv", STATED_COLUMNS, "statements", dtype={"figure": str}
+    )
     rows = [
         claim_row(row, bands[bands["claim"] == row.claim], source) for row in stated.itertuples()
     ]

@@ -9,6 +9,7 @@ import numpy as np
 
 from lithofrac.config.errors import one_line
 from lithofrac.errors import FileError
+from lithofrac.plain_file import refuse_other
 
 MM = 1e3  # millimetres in a metre
 
@@ -103,6 +104,8 @@ def frame_times(folder: Path) -> list[tuple[float, Path]]:
         When the list of them is damaged, or empty.
     """
     path = folder / "fields.pvd"
+    if path.exists():
+        refuse_other(path, "a list of fields")
     try:
         series = ElementTree.parse(path).getroot().iter("DataSet")
         found = sorted(

@@ -9,6 +9,7 @@ from lithofrac.analysis.hole import WHOLE, HoleRun
 from lithofrac.analysis.hole_tables import MPA, hole_initiation, hole_runs
 from lithofrac.analysis.mohr_coulomb import first_yield
 from lithofrac.analysis.verdict import OPEN, verdict
+from lithofrac.data.csv_file import read_bands
 
 COLUMNS = [
     "check", "case", "zone", "criterion", "initiation_MPa", "reference_MPa",
@@ -29,7 +30,7 @@ def hole_checks(inputs: list[Path], data: Path) -> pd.DataFrame:
     """
     paths = [Path(path) for path in inputs]
     (file,) = (path for path in paths if path.name == "bands.csv")
-    bands = pd.read_csv(file).set_index("quantity")["band"]
+    bands = read_bands(file)
     table, runs = hole_initiation(paths, data), hole_runs(paths)
     rows = [
         *_null_test(table, bands["hole_null_test"]),

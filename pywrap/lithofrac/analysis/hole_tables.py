@@ -10,6 +10,7 @@ from lithofrac.analysis.hole import AFTER, CRITERIA, ZONES, HoleRun, is_hole
 from lithofrac.analysis.hole_cohesive import primary_cohesive
 from lithofrac.analysis.runs import Run, find_runs
 from lithofrac.config.material import Material
+from lithofrac.data.csv_file import read_columns
 
 MM, MPA = 1e-3, 1e6
 SERIES = ("similar", "mesh1mm", "block150")  # those that run over the radius
@@ -39,7 +40,10 @@ def hole_initiation(inputs: list[Path], data: Path) -> pd.DataFrame:
     """
     made = [path for path in map(Path, inputs) if path.name == "hole_initiation.csv"]
     if made:
-        return pd.read_csv(made[0], keep_default_na=False, na_values={c: [""] for c in NUMBERS})
+        return read_columns(
+            made[0], INITIATION, "the table hole_initiation", NUMBERS, empty=True,
+            keep_default_na=False, na_values={c: [""] for c in NUMBERS},
+        )  # fmt: skip
     rows = []
     for run in hole_runs(inputs):
         head = {

@@ -13,6 +13,7 @@ import pandas as pd
 
 from lithofrac.config.errors import one_line
 from lithofrac.errors import FileError
+from lithofrac.plain_file import refuse_other
 
 NUMBER = (int, float)
 KINDS = {
@@ -24,6 +25,7 @@ KINDS = {
     "energy_residual": (NUMBER, "a number"),
     "core_seconds": (NUMBER, "a number"),
     "wall_seconds": (NUMBER, "a number"),
+    "expected_seconds": (NUMBER, "a number"),
     "time_step_min_s": (NUMBER, "a number"),
 }  # key of a summary -> what it holds where it is there
 
@@ -57,6 +59,23 @@ def read_summary(path: Path) -> Summary:
         raise FileError(
             f"{path.parent}: holds no {path.name}, expected a folder of `lithofrac run`"
         )
+    values = read_json(path, expected)
+    for key, (kind, words) in KINDS.items():
+        _refuse(path, key, values.get(key), kind, words)
+    for key, value in (values.get("energy") or {}).items():
+        _refuse(path, f"energy.{key}", value, NUMBER, "a number")
+    return Summary(values, path)
+
+
+def read_json(path: Path, expected: str) -> dict:
+    """Keys and values of a JSON object.
+
+    Raises
+    ------
+    FileError
+        Where the file is none; `expected` says what it should have been.
+    """
+    refuse_other(path, expected)
     try:
         values = json.loads(path.read_bytes())
     except (ValueError, RecursionError) as error:
@@ -65,11 +84,7 @@ def read_summary(path: Path) -> Summary:
         raise FileError(f"{path}: expected {expected} in JSON ({why})") from None
     if not isinstance(values, dict):
         raise FileError(f"{path}: expected a JSON object, {expected}")
-    for key, (kind, words) in KINDS.items():
-        _refuse(path, key, values.get(key), kind, words)
-    for key, value in (values.get("energy") or {}).items():
-        _refuse(path, f"energy.{key}", value, NUMBER, "a number")
-    return Summary(values, path)
+    return values
 
 
 def _refuse(path: Path, key: str, value: object, kind: type | tuple, words: str) -> None:
@@ -77,19 +92,20 @@ def _refuse(path: Path, key: str, value: object, kind: type | tuple, words: str)
         raise FileError(f"{path}: {key} = {one_line(value)}: expected {words}")
 
 
-def read_table(path: Path, *columns: str) -> pd.DataFrame:
+def read_table(path: Path, *columns: str, empty: bool = False) -> pd.DataFrame:
     """Rows of a Parquet table of a run.
 
     Parameters
     ----------
     columns : of numbers, that it must have at least
+    empty : whether a table without rows is right
 
     Raises
     ------
     FileNotFoundError
         Where there is no such file.
     FileError
-        Where it is no Parquet table, or lacks a column.
+        Where it is no Parquet table, or lacks a column or any row.
     """
     if not path.exists():
         raise FileNotFoundError(2, "No such file or directory", str(path))
@@ -107,4 +123,6 @@ def read_table(path: Path, *columns: str) -> pd.DataFrame:
             raise FileError(f"{path}: has no column {column!r}, expected a table of a run")
         if len(table) and not pd.api.types.is_numeric_dtype(table[column]):
             raise FileError(f"{path}: column {column!r} holds no numbers, expected a run")
+    if table.empty and not empty:
+        raise FileError(f"{path}: has no rows, expected a table of a run")
     return table

@@ -21,6 +21,7 @@ import pandas as pd
 from lithofrac.analysis.runs import Run
 from lithofrac.analysis.scalars import ENERGY, mesh_hash, scalars
 from lithofrac.data import DataError
+from lithofrac.data.csv_file import read_columns
 
 NUMBERS = ["case", "quantity", "value", "kind", "tolerance", "reason"]
 MESHES = ["case", "mesh"]
@@ -174,7 +175,7 @@ def write(
         "why": " ".join(why.split()),
     }
     log = folder / "updates.csv"
-    before = [pd.read_csv(log, dtype=str)] if log.exists() else []
+    before = [read_columns(log, UPDATES, "updates", dtype=str)] if log.exists() else []
     updates = pd.concat([*before, pd.DataFrame([line], columns=UPDATES).astype(str)])
     tables = {
         "numbers": numbers.sort_values(["case", "quantity"], kind="stable"),
@@ -200,10 +201,10 @@ def read(folder: Path) -> References:
         path = folder / f"{name}.csv"
         if not path.is_file():
             raise DataError(f"{path}: no such file, expected references of `lithofrac references`")
-        tables[name] = pd.read_csv(path, dtype=None if name == "numbers" else str)
-        missing = [column for column in columns if column not in tables[name]]
-        if missing:
-            raise DataError(f"{path}: column '{missing[0]}' is missing")
+        tables[name] = read_columns(
+            path, columns, "references", ("value", "tolerance") if name == "numbers" else (),
+            dtype=None if name == "numbers" else str,
+        )  # fmt: skip
     meshes = dict(tables["meshes"][MESHES].itertuples(index=False))
     return References(tables["numbers"], meshes, tables["updates"].iloc[-1].to_dict())
 

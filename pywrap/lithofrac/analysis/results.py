@@ -14,6 +14,7 @@ from lithofrac.analysis.runs import find_runs
 from lithofrac.analysis.tables import NOT_DIGITISED, errors, single_element, strength, tautona
 from lithofrac.analysis.tables import zigong_line as fitted_line
 from lithofrac.analysis.verdict import FAILS, OPEN, verdict
+from lithofrac.data.csv_file import read_bands
 
 COLUMNS = ("case", "quantity", "expected", "measured", "computed", "difference", "band", "verdict")
 BENCH_STIFFNESS = 0.02  # lateral stiffness over E of `lithofrac point --test stiff_confinement`
@@ -34,7 +35,7 @@ def verdicts(inputs: list[Path], data: Path) -> pd.DataFrame:
     """
     by_suffix = {suffix: [path for path in map(Path, inputs) if path.suffix == suffix]
                  for suffix in (".csv", ".yaml", ".json", ".parquet")}  # fmt: skip
-    bands = pd.read_csv(by_suffix[".csv"][0]).set_index("quantity")["band"]
+    bands = read_bands(by_suffix[".csv"][0])
     rows = [
         *_single_elements(by_suffix[".parquet"], data, bands),
         *_sandstone(by_suffix[".json"], by_suffix[".parquet"], data, bands),

@@ -6,8 +6,11 @@ every test is compared with the closed form that the bench meets. Stresses are
 divided by the mean strength and lateral strains by the largest measured one, so that both count.
 
 Confidence intervals are those of the linear model at the solution: (J^T J)^-1 times the variance of
-the residuals, Student's t. They take points as independent, which those of one curve are not, and
-say nothing of a law that does not fit: look at the residuals first.
+the residuals, Student's t. What was read off the curves before, and held, adds what an error of its
+own does to the solution (two-step estimation, Murphy & Topel 1985): next to 0 the plastic strain is
+a small difference of the measured and the elastic one, so Young's modulus decides the first rows.
+Intervals take points as independent, which those of one curve are not, and say nothing of a law
+that does not fit: look at the residuals first.
 """
 
 from collections.abc import Callable
@@ -121,8 +124,15 @@ def unknowns(base: Material, start: Start, strongest: float, dilates: bool = Fal
     return Unknowns(base, tuple(keys), np.clip(first, low + inside, high - inside), low, high)
 
 
-def fit_rock(wanted: Unknowns, fitted: list[Triaxial], predicted: list[Triaxial]) -> RockFit:
+def fit_rock(
+    wanted: Unknowns,
+    fitted: list[Triaxial],
+    predicted: list[Triaxial],
+    errors: dict[str, float] | None = None,
+) -> RockFit:
     """Fit the unknowns to some tests and predict the strength of others.
+
+    `errors` are standard errors of keys of the base that were read off the same tests.
 
     Raises
     ------
@@ -154,7 +164,7 @@ def fit_rock(wanted: Unknowns, fitted: list[Triaxial], predicted: list[Triaxial]
     points = [_points(rock, role, test) for role, test in roles if test.has_curve]
     return RockFit(
         rock,
-        _parameters(wanted, solved),
+        _parameters(wanted, solved, _moved(compare, rock, errors or {})),
         pd.DataFrame([_strength(rock, role, test) for role, test in roles]),
         pd.concat(points, ignore_index=True) if points else pd.DataFrame(),
         solved.status > 0,
@@ -225,7 +235,17 @@ def _comparison(tests: list[Triaxial]) -> Callable[[Material], np.ndarray]:
     return residuals
 
 
-def _parameters(wanted: Unknowns, solved: OptimizeResult) -> pd.DataFrame:
+def _moved(compare: Callable, rock: Material, errors: dict[str, float]) -> np.ndarray:
+    """Change of the residuals by one standard error of each key that is held, (m, k)."""
+    columns = []
+    for key, error in errors.items():
+        ends = [compare(rock.model_copy(update={key: getattr(rock, key) + sign * error}))
+                for sign in (1.0, -1.0)]  # fmt: skip
+        columns.append(0.5 * (ends[0] - ends[1]))
+    return np.array(columns).T
+
+
+def _parameters(wanted: Unknowns, solved: OptimizeResult, moved: np.ndarray) -> pd.DataFrame:
     """Values with their intervals and bounds; what lies on a bound has no interval."""
     values, jacobian, residuals = solved.x, solved.jac, solved.fun
     low, high = solved.active_mask < 0, solved.active_mask > 0
@@ -235,8 +255,10 @@ def _parameters(wanted: Unknowns, solved: OptimizeResult) -> pd.DataFrame:
     half = np.full(len(values), np.nan)
     if degrees > 0 and free.any():
         variance = float(residuals @ residuals) / degrees
-        covariance = variance * np.linalg.pinv(jacobian[:, free].T @ jacobian[:, free])
-        half[free] = stats.t.ppf(0.5 + 0.5 * CONFIDENCE, degrees) * np.sqrt(np.diag(covariance))
+        squares = variance * np.diag(np.linalg.pinv(jacobian[:, free].T @ jacobian[:, free]))
+        if moved.size:
+            squares = squares + np.sum((np.linalg.pinv(jacobian[:, free]) @ moved) ** 2, axis=1)
+        half[free] = stats.t.ppf(0.5 + 0.5 * CONFIDENCE, degrees) * np.sqrt(squares)
     strain = wanted.base.plastic_strain
     notes = np.select(
         [low, high, unseen],

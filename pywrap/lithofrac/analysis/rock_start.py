@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
+from scipy.stats import linregress
 
 from lithofrac.data.triaxial import Triaxial
 
@@ -45,15 +46,27 @@ def elastic_constants(tests: list[Triaxial]) -> tuple[float, float]:
 
     Medians of the tests. The ratio is NaN where no test has lateral strains.
     """
+    moduli, ratios = _elastic_lines(tests)
+    slopes = [[line.slope for line in lines] for lines in (moduli, ratios)]
+    return float(np.median(slopes[0])), float(np.median(slopes[1])) if ratios else float("nan")
+
+
+def elastic_errors(tests: list[Triaxial]) -> tuple[float, float]:
+    """Standard errors of `elastic_constants`, those of a mean of lines; 0 where there is none."""
+    moduli, ratios = (np.array([line.stderr for line in lines]) for lines in _elastic_lines(tests))
+    return tuple(float(np.linalg.norm(own) / max(own.size, 1)) for own in (moduli, ratios))
+
+
+def _elastic_lines(tests: list[Triaxial]) -> tuple[list, list]:
+    """Lines of stress difference and of lateral strain over the elastic part of each curve."""
     moduli, ratios = [], []
     for test in tests:
         last = _elastic_rows(test)
         strain = test.axial_strain[:last]
-        difference = test.axial_stress_MPa[:last] - test.confinement_MPa
-        moduli.append(np.polyfit(strain, difference, 1)[0])
+        moduli.append(linregress(strain, test.axial_stress_MPa[:last] - test.confinement_MPa))
         if test.lateral_strain is not None:
-            ratios.append(np.polyfit(strain, test.lateral_strain[:last], 1)[0])
-    return float(np.median(moduli)), float(np.median(ratios)) if ratios else float("nan")
+            ratios.append(linregress(strain, test.lateral_strain[:last]))
+    return moduli, ratios
 
 
 def _elastic_rows(test: Triaxial) -> int:

@@ -16,6 +16,7 @@ from lithofrac.config.contact import ROCK
 from lithofrac.config.material import Material
 from lithofrac.config.yaml_file import read_yaml
 from lithofrac.data import DataError
+from lithofrac.errors import FileError
 from lithofrac.problem import Mesh
 
 # Columns that every run has written, whichever version made it.
@@ -29,6 +30,7 @@ LEDGER = (
     "damping_J",
     "residual_J",
 )
+SECTIONS = ("material", "scene", "loading")  # that every case has
 ENDS = ("x1_mm", "y1_mm", "x2_mm", "y2_mm")  # of a crack
 
 
@@ -56,7 +58,14 @@ class Run:
     @cached_property
     def case(self) -> dict:
         """The case as it was run (`case.yaml`)."""
-        return read_yaml(self.folder / "case.yaml")
+        path = self.folder / "case.yaml"
+        values = read_yaml(path)
+        for key in SECTIONS:
+            if not isinstance(values.get(key, {}), dict):
+                raise FileError(f"{path}: {key}: expected that section of a case that was run")
+        if not isinstance(values.get("scene", {}).get("kind"), str):
+            raise FileError(f"{path}: scene.kind: expected a text, as in a case that was run")
+        return values
 
     @property
     def has_axial_stress(self) -> bool:
@@ -104,7 +113,7 @@ class Run:
             raise DataError(
                 f"{self.folder}: holds no cracks.parquet, expected a run with discrete cracks"
             )
-        table = read_table(self.folder / "cracks.parquet", "time_s", *ENDS)
+        table = read_table(self.folder / "cracks.parquet", "time_s", *ENDS, empty=True)
         return table.sort_values("time_s", kind="stable", ignore_index=True)
 
     @cached_property

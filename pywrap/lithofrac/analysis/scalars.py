@@ -17,7 +17,9 @@ from lithofrac.data import DataError
 from lithofrac.problem import Mesh
 
 # Of summary.json: what the machine was doing, and what says nothing of the rock.
-OF_THE_MACHINE = ("core_seconds", "wall_seconds", "element_steps_per_core_second", "threads")
+OF_THE_MACHINE = (
+    "core_seconds", "wall_seconds", "expected_seconds", "element_steps_per_core_second", "threads",
+)  # fmt: skip
 ENERGY = "energy."  # in front of the entries of the ledger at the end of the run
 IS_NOISE = (f"{ENERGY}residual_J", f"{ENERGY}residual_relative")  # `energy_residual` bounds both
 ROUNDED = 1e-9  # [m] node positions of a mesh count as equal to this

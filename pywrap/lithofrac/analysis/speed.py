@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
 
+from lithofrac.analysis.reading import read_json, read_summary
 from lithofrac.analysis.verdict import OPEN, verdict
 from lithofrac.data import DataError
+from lithofrac.data.csv_file import read_columns
+from lithofrac.errors import FileError
 
 NONE = "-"  # verdict where nothing was asked
 BYTES = " bytes per element"
 # Steps of two threads: contact is solved by one of them, what yields lies in few of their blocks.
 THREADED = ("full_step", "full_step_yielding_10", "discrete_step_pairs_0.1")
+BESIDE = ("leave_out.csv", "growth.csv")  # tables beside `benchmark.json`
 NEAR = 0.02  # relative, of a number of elements
 WITHIN = 2.0  # factor, of a predicted run time
 ROW_COLUMNS = (
@@ -111,21 +114,43 @@ def _read(inputs: list[Path], data: Path) -> Measured:
     if "benchmark.json" not in by_name:
         raise DataError("plot speed: expected benchmark.json among the inputs")
     tables = [
-        pd.read_csv(by_name[name]) if name in by_name else pd.DataFrame()
-        for name in ("leave_out.csv", "growth.csv")
+        read_columns(by_name[name], (), "a table of the benchmark")
+        if name in by_name
+        else pd.DataFrame()
+        for name in BESIDE
     ]
     runs = [Path(path) for path in inputs if Path(path).name == "summary.json"]
-    summaries = [json.loads(path.read_text(encoding="utf-8")) for path in runs]
-    benchmark = json.loads(by_name["benchmark.json"].read_text(encoding="utf-8"))
+    summaries = [read_summary(path) for path in runs]
+    benchmark = read_benchmark(by_name["benchmark.json"])
     by_case = {summary["case"]: summary for summary in summaries}
     return Measured(benchmark, *tables, by_case, _paper_seconds(data))
 
 
 def _paper_seconds(data: Path) -> float:
     """Run time that Klerck 2004, section 3.1, states for the discrete punch [s]."""
-    stated = pd.read_csv(data / "klerck2004" / "parameters.csv")
+    path = data / "klerck2004" / "parameters.csv"
+    stated = read_columns(path, ("quantity", "value"), "what the paper states")
     hours = stated.loc[stated["quantity"] == "runtime_discrete_fracture", "value"]
     return 3600.0 * float(hours.iloc[0])
+
+
+def read_benchmark(path: Path) -> dict:
+    """What `benchmark.json` holds, with its rows.
+
+    Raises
+    ------
+    FileError
+        Where it is another file.
+    """
+    expected = "rows of the benchmark, each with name, elements and threads"
+    found = read_json(path, expected)
+    rows = found.get("rows")
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise FileError(f"{path}: rows: expected {expected}")
+    lacking = [key for row in rows for key in ("name", "elements", "threads") if key not in row]
+    if lacking:
+        raise FileError(f"{path}: rows: one has no {lacking[0]!r}, expected {expected}")
+    return found
 
 
 def _of_bare(name: str, elements: int) -> Callable[[Measured], float | None]:

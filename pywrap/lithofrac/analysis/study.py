@@ -26,6 +26,7 @@ SUMMARY = (
     "time_step_continuum_s",
     "threads",
     "core_seconds",
+    "expected_seconds",
     "wall_seconds",
     "element_steps_per_core_second",
     "energy_residual",

@@ -20,6 +20,7 @@ from lithofrac.analysis.runs import Run, find_runs
 from lithofrac.analysis.verdict import OPEN, verdict
 from lithofrac.config.material import Material
 from lithofrac.data import Curve, load_curves, measured_strength
+from lithofrac.data.csv_file import read_bands
 from lithofrac.problem import Mesh
 
 MPA = 1e6
@@ -32,6 +33,8 @@ SUMMARY = (
     "steps",
     "wall_seconds",
     "core_seconds",
+    "expected_seconds",
+    "expected_over_measured",
     "element_steps_per_core_second",
     "energy_residual",
     "kinetic_ratio_at_peak",
@@ -183,11 +186,13 @@ def run_time(inputs: list[Path], data: Path) -> pd.DataFrame:
     """
     paths = [Path(path) for path in inputs]
     (file,) = (path for path in paths if path.name == "bands.csv")
-    band = pd.read_csv(file).set_index("quantity")["band"]["kinetic_ratio_before_peak"]
+    band = read_bands(file)["kinetic_ratio_before_peak"]
     rows = []
     for run in find_runs([path for path in paths if path != file]):
         ratio = ratio_before_peak(run)
+        expected = run.summary.get("expected_seconds", np.nan)
         judged = {
+            "expected_over_measured": expected / run.summary["core_seconds"],
             "kinetic_ratio_before_peak": ratio,
             "kinetic_verdict": OPEN if np.isnan(ratio) else verdict(ratio < band),
         }

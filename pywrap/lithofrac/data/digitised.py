@@ -17,6 +17,8 @@ from lithofrac.config.errors import ConfigError, one_line, sentences
 from lithofrac.config.yaml_file import read_yaml
 from lithofrac.data.axes import FACTORS, Axis, load_axes
 from lithofrac.data.errors import DataError
+from lithofrac.errors import FileError
+from lithofrac.plain_file import text_of
 
 FOLDER = Path("klerck2004", "digitised")
 AXES = Path("klerck2004", "figure_axes.csv")
@@ -126,11 +128,9 @@ def _read_sheet(path: Path) -> Sheet:
 def _read_points(path: Path) -> np.ndarray:
     """Points of a curve, (n, 2), n >= 1."""
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except FileNotFoundError:
-        raise DataError(f"{path}: no such file, expected the points of the curve") from None
-    except UnicodeDecodeError as error:
-        raise DataError(f"{path}: byte {error.start} is not UTF-8, expected a CSV file") from None
+        lines = text_of(path, "the points of the curve").splitlines()
+    except FileError as error:
+        raise DataError(str(error)) from None
     points = []
     for number, line in enumerate(lines, start=1):
         if not line.strip():

@@ -20,6 +20,8 @@ import pandas as pd
 
 from lithofrac.config.errors import one_line, suggestion
 from lithofrac.data.errors import DataError
+from lithofrac.errors import FileError
+from lithofrac.plain_file import refuse_other
 
 STRENGTHS = ("confinement_MPa", "strength_MPa")
 BESIDE_STRENGTHS = ("strength_min_MPa", "strength_max_MPa", "tests")
@@ -80,15 +82,14 @@ def _tests_of(path: Path) -> list[Triaxial]:
 def _read(path: Path) -> pd.DataFrame:
     """Cells as texts; the index is the line of the file less 2."""
     try:
+        refuse_other(path, "triaxial tests as CSV")
         with warnings.catch_warnings():  # pandas warns of cells that it leaves out
             warnings.simplefilter("error", pd.errors.ParserWarning)
             table = pd.read_csv(
                 path, dtype=str, skip_blank_lines=False, skipinitialspace=True, index_col=False
             )
-    except FileNotFoundError:
-        raise DataError(f"{path}: no such file, expected triaxial tests as CSV") from None
-    except IsADirectoryError:
-        raise DataError(f"{path}: is a folder, expected triaxial tests as CSV") from None
+    except FileError as error:
+        raise DataError(str(error)) from None
     except pd.errors.ParserWarning:
         raise DataError(f"{path}: has rows of more cells than headings, expected as many") from None
     except (ValueError, OverflowError) as error:  # ParserError, EmptyDataError, not UTF-8

@@ -10,6 +10,7 @@ from matplotlib.ticker import NullFormatter
 
 from lithofrac.analysis.front import pareto_front
 from lithofrac.data import DataError
+from lithofrac.data.csv_file import read_columns
 from lithofrac.plots import style
 
 COLUMNS = 3
@@ -44,9 +45,9 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     DataError
         When it is another table.
     """
-    table = pd.read_csv(inputs[0])
-    if len(inputs) != 1 or not set(NEEDED) <= set(table):
-        raise DataError(f"plot accuracy: expected one accuracy.csv, got {inputs[0]}")
+    if len(inputs) != 1:
+        raise DataError(f"plot accuracy: expected one accuracy.csv, got {len(inputs)} files")
+    table = read_columns(inputs[0], NEEDED, "accuracy.csv", ("error_percent", "core_seconds"))
     table = table[table["knob"] != FINEST]
     groups = list(table.groupby(["problem", "quantity"], sort=False))
     rows = -(-len(groups) // COLUMNS)

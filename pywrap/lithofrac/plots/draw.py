@@ -21,6 +21,7 @@ from lithofrac.analysis.punch import punch as punch_table
 from lithofrac.analysis.study import study_table
 from lithofrac.analysis.variants import variants as variants_table
 from lithofrac.analysis.zigong_prediction import zigong_prediction, zigong_prediction_error
+from lithofrac.config.errors import one_line
 from lithofrac.data import DataError
 from lithofrac.plots import (
     accuracy,
@@ -35,6 +36,7 @@ from lithofrac.plots import (
     hole,
     measured,
     mesh,
+    needs,
     pattern,
     punch,
     punch_patterns,
@@ -125,11 +127,7 @@ def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> 
     """
     data = Path("data") if data is None else data
     known = _known(kind, out)
-    missing = [str(path) for path in inputs if not Path(path).exists()]
-    if missing:
-        raise DataError(f"{missing[0]}: no such file or folder, expected an input of the plot")
-    if known is not TABLES and not inputs:
-        raise DataError(f"plot {kind}: no input, expected results folders or files to draw")
+    needs.check(kind, inputs, known is TABLES)
     try:
         made = known[kind](inputs, data, out) if known is MOVIES else known[kind](inputs, data)
     except FileNotFoundError as error:  # an input that lies in no results folder
@@ -137,6 +135,11 @@ def draw(kind: str, inputs: list[Path], out: Path, data: Path | None = None) -> 
             f"plot {kind}: {error.filename or error}: no such file, expected an input in a results "
             "folder of `lithofrac run`"
         ) from None
+    except KeyError as error:  # a column or key of tables that are read as they are
+        wanted = needs.of(kind, known is TABLES).words
+        raise DataError(
+            f"plot {kind}: the inputs lack {one_line(error.args[0])!r}, expected {wanted}"
+        ) from error
     if known is FIGURES:
         style.save(made, out)
     if known is not TABLES:

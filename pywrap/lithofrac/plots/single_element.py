@@ -6,7 +6,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from lithofrac.analysis.bench import Bench, find_bench
-from lithofrac.data import DataError
 from lithofrac.plots import style
 
 PANELS = (
@@ -22,10 +21,6 @@ PANELS = (
 def figure(inputs: list[Path], data: Path) -> Figure:
     """Six panels against axial strain, one curve a confinement; `inputs` are of one rock."""
     curves = find_bench(inputs)
-    if not curves:
-        raise DataError(
-            f"{inputs[0]}: not a curve of the bench, expected ROCK/TEST_pCONFINEMENT.parquet"
-        )
     drawn, axes = style.new_figure(2, 3, height=4.9, sharex=True)
     colours = style.confinement_colours([curve.confinement_MPa for curve in curves])
     for panel, (column, label) in zip(axes.flat, PANELS, strict=True):

@@ -1,6 +1,5 @@
 """Speed: what a step costs, what leaving out saves, how cost grows and how it is predicted."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +7,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from lithofrac.analysis.speed import BESIDE, read_benchmark
 from lithofrac.data import DataError
+from lithofrac.data.csv_file import read_columns
 from lithofrac.plots import style
 
 MARKS = {5_000: (style.BLUE, "o"), 50_000: (style.ORANGE, "s"), 200_000: (style.GREEN, "^")}
@@ -19,7 +20,7 @@ SERIES = {
     "cracks": (style.RED, "D", "more in a step, over cut edges"),
     "threads": (style.PURPLE, "v", "a step on the wall, over threads"),
 }
-INPUTS = ("benchmark.json", "leave_out.csv", "growth.csv")
+INPUTS = ("benchmark.json", *BESIDE)
 
 
 def figure(inputs: list[Path], data: Path) -> Figure:
@@ -27,8 +28,10 @@ def figure(inputs: list[Path], data: Path) -> Figure:
     by_name = {Path(path).name: Path(path) for path in inputs}
     if set(by_name) != set(INPUTS):
         raise DataError(f"plot speed: expected {', '.join(INPUTS)}")
-    rows = json.loads(by_name["benchmark.json"].read_text(encoding="utf-8"))["rows"]
-    leave_out, growth = (pd.read_csv(by_name[name]) for name in INPUTS[1:])
+    rows = read_benchmark(by_name["benchmark.json"])["rows"]
+    leave_out, growth = (
+        read_columns(by_name[name], (), "a table of the benchmark") for name in BESIDE
+    )
     drawn, axes = style.new_figure(2, 2, height=8.4)
     _draw_rows(axes[0, 0], pd.DataFrame(rows))
     _draw_leave_out(axes[0, 1], leave_out)

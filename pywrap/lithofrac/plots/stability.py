@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from lithofrac.data import DataError
+from lithofrac.data.csv_file import read_columns
 from lithofrac.plots import style
 
 STYLES = {
@@ -19,6 +20,9 @@ STYLES = {
 OFFSETS = {"continuum": -0.22, "contact": 0.0, "cracked": 0.22}  # rows of the margins
 CEILING = 1e6  # of the energy that is drawn
 TICKS = (1, 1.5, 2, 3, 5, 10, 20, 30)
+TABLES = "stability_limit.csv and stability.csv"
+CURVES = ("time_step_factor", "mesh", "broke", "internal_over_put_in")
+MARGINS = ("margin", "mesh", "family")
 DEFAULT = 0.9  # time step factor of a case
 
 
@@ -27,11 +31,13 @@ def figure(inputs: list[Path], data: Path) -> Figure:
 
     Inputs are `stability_limit.csv` and `stability.csv`, in any order.
     """
-    tables = [pd.read_csv(path, keep_default_na=False, na_values=[""]) for path in inputs]
-    curves = [table for table in tables if "time_step_factor" in table]
-    matrix = [table for table in tables if "margin" in table]
+    tables = [
+        read_columns(path, (), TABLES, keep_default_na=False, na_values=[""]) for path in inputs
+    ]
+    curves = [table for table in tables if set(CURVES) <= set(table)]
+    matrix = [table for table in tables if set(MARGINS) <= set(table)]
     if len(curves) != 1 or len(matrix) != 1:
-        raise DataError("plot stability: expected stability_limit.csv and stability.csv")
+        raise DataError(f"plot stability: expected {TABLES}")
     drawn, axes = style.new_figure(1, 2, height=4.6, width_ratios=[1.0, 1.0])
     _draw_curves(axes[0, 0], curves[0])
     _draw_margins(axes[0, 1], matrix[0])

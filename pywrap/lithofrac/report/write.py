@@ -8,6 +8,8 @@ from pathlib import Path
 import pandas as pd
 
 from lithofrac.data import DataError
+from lithofrac.data.csv_file import read_columns
+from lithofrac.plain_file import text_of
 from lithofrac.report.blocks import fill, has_blocks
 from lithofrac.report.captions import caption, is_of_a_run
 from lithofrac.report.links import moved, to_files, to_pages
@@ -54,7 +56,7 @@ def write_report(out_dir: Path, file: Path, sheets: Path = SHEETS) -> None:
         When there are no tables, or a block asks for one that is not there.
     """
     tables, captions = read_tables(out_dir), sheets.parent / "captions"
-    old = file.read_text(encoding="utf-8") if file.is_file() else ""
+    old = text_of(file, "a page in UTF-8 to refresh") if file.is_file() else ""
     here, html, sheet = file.parent, file.suffix == ".html", sheets / f"{file.stem}.md"
     if has_blocks(old) and not html and not file.is_relative_to(out_dir):
         pictures = sheets.parent / GALLERY
@@ -87,10 +89,10 @@ def read_tables(out_dir: Path) -> dict[str, pd.DataFrame]:
         raise DataError(f"{out_dir / 'tables'}: holds no .csv, expected tables of a finished suite")
     tables = {}
     for path in paths:
-        try:
-            tables[path.stem] = pd.read_csv(path, keep_default_na=False, na_values=[""])
-        except pd.errors.EmptyDataError:
-            tables[path.stem] = pd.DataFrame()
+        tables[path.stem] = read_columns(
+            path, (), "a table of a finished suite", empty=True,
+            keep_default_na=False, na_values=[""],
+        )  # fmt: skip
     return tables
 
 

@@ -7,6 +7,8 @@ is not looked at where a flipped bit in a header makes an array shorter.
 from __future__ import annotations
 
 import hashlib
+import zipfile
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
@@ -14,13 +16,18 @@ from pathlib import Path
 
 import numpy as np
 
-from lithofrac.errors import CheckpointError
+from lithofrac.errors import CheckpointError, FileError
+from lithofrac.plain_file import refuse_other
 from lithofrac.problem import Problem
 from lithofrac.results.files import write_whole
 
 FORMAT = 5  # raise it whenever the meaning of a stored number changes
+MOST_BYTES = 100_000_000_000  # of a file; a million elements have 1.5 billion
 NAME, PREVIOUS = "checkpoint.npz", "checkpoint_previous.npz"
 FAILED = "checkpoint_failed.npz"  # to look at; nothing resumes from it
+# Entry -> type, as numpy writes it, and shape; a size that has a name is the same everywhere.
+Layout = Mapping[str, tuple[str, tuple[int | str, ...]]]
+FINITE = ("clocks", "frames", "history", "guards_scale", "guards_worst")  # goes to text and JSON
 # Beside the compiled core, what decides the numbers of a run once there is a problem.
 DRIVERS = ("core.py", "run.py", "results")
 
@@ -97,8 +104,32 @@ def _write(path: Path, mark: str, arrays: dict[str, np.ndarray], older: Path | N
     write_whole(path, lambda part: np.savez(part, digest=digest, **arrays), older=older)
 
 
-def read(folder: Path, mark: str) -> Checkpoint:
+def misfit(arrays: Mapping[str, np.ndarray], layout: Layout) -> str:
+    """In what arrays differ from a layout first, or nothing; what it does not name may be there."""
+    sizes: dict[int | str, int] = {}
+    for name, (kind, shape) in layout.items():
+        if name not in arrays:
+            return f"it lacks {name!r}"
+        array = arrays[name]
+        fits = array.dtype.str[1:].startswith(kind) and array.ndim == len(shape)
+        for size, wanted in zip(array.shape, shape, strict=False):
+            known = wanted if isinstance(wanted, int) else sizes.setdefault(wanted, size)
+            fits = fits and size == known
+        if not fits:
+            return f"{name!r} holds {array.dtype} of shape {array.shape}"
+        if kind == "f8" and name in FINITE and not np.isfinite(array).all():
+            return f"{name!r} holds what is no finite number"
+    return ""
+
+
+def read(
+    folder: Path, mark: str, wrong: Callable[[dict[str, np.ndarray]], str] | None = None
+) -> Checkpoint:
     """The newest good checkpoint of the run with this fingerprint.
+
+    Parameters
+    ----------
+    wrong : says why arrays are not those of the run, or nothing if they are
 
     Raises
     ------
@@ -110,6 +141,9 @@ def read(folder: Path, mark: str) -> Checkpoint:
         path = folder / name
         try:
             arrays = _load(path, mark)
+            why = wrong(arrays) if wrong is not None else ""
+            if why:
+                raise CheckpointError(f"{path}: not a checkpoint of this run ({why})")
         except FileNotFoundError:
             continue
         except CheckpointError as error:
@@ -121,9 +155,11 @@ def read(folder: Path, mark: str) -> Checkpoint:
     raise CheckpointError("; ".join(refused) or f"{folder}: there is no checkpoint to resume from")
 
 
-def recover(folder: Path, mark: str) -> Checkpoint:
+def recover(
+    folder: Path, mark: str, wrong: Callable[[dict[str, np.ndarray]], str] | None = None
+) -> Checkpoint:
     """As `read`; what was good becomes the newest, or the next `write` would give it up."""
-    found = read(folder, mark)
+    found = read(folder, mark, wrong)
     if found.path.name == PREVIOUS:
         found.path.replace(folder / NAME)
     return found
@@ -137,13 +173,20 @@ def _load(path: Path, mark: str) -> dict[str, np.ndarray]:
     CheckpointError
         In one sentence, if it is damaged, of another format or of another run.
     """
+    if not path.exists():
+        raise FileNotFoundError(2, "No such file or directory", str(path))
     try:
+        refuse_other(path, "a checkpoint", MOST_BYTES)
+        _refuse_packed(path)
         with np.load(path, allow_pickle=False) as file:
             arrays = {key: file[key] for key in file}
+        other = [key for key, array in arrays.items() if not isinstance(array, np.ndarray)]
+        if other:
+            raise ValueError(f"{other[0]!r} is no array")
         kind = int(arrays["format"])
         said = str(arrays.pop("digest", ""))
-    except FileNotFoundError:
-        raise
+    except FileError as error:
+        raise CheckpointError(str(error)) from None
     except Exception as error:  # a damaged archive ends in nearly any kind of error
         words = " ".join(f"{type(error).__name__}: {error}".split())
         raise CheckpointError(f"{path}: not a whole checkpoint ({words})") from None
@@ -155,6 +198,15 @@ def _load(path: Path, mark: str) -> dict[str, np.ndarray]:
         raise CheckpointError(f"{path}: it belongs to another case, mesh or material")
     del arrays["format"]
     return arrays
+
+
+def _refuse_packed(path: Path) -> None:
+    """Refuse an archive that unfolds to more than it holds; checkpoints are not packed."""
+    if zipfile.is_zipfile(path):
+        with zipfile.ZipFile(path) as file:
+            unpacked = sum(member.file_size for member in file.infolist())
+        if unpacked > path.stat().st_size:
+            raise ValueError(f"it unfolds to {unpacked:.3g} bytes, more than it has")
 
 
 def _digest(arrays: dict[str, np.ndarray]) -> str:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import zipfile
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import pandas as pd
+
+from lithofrac.plain_file import text_of
 
 OWN_FILES = (
     "summary.json",
@@ -28,6 +32,36 @@ OWN_FILES = (
     "geometry.geo",
     "geometry.msh",
 )  # of a run: what the next one in the same folder may delete
+
+
+MARK = ".lithofrac"  # in a folder that a run has made: what it holds under these names may go
+MARKED = "Results of `lithofrac run`; the next run in this folder replaces them.\n"
+
+
+def foreign(folder: Path) -> Path | None:
+    """A file that a run would replace in a folder that no run has made; None without one."""
+    if (folder / MARK).is_file() or _has_summary(folder) or _has_checkpoint(folder):
+        return None
+    return next((path for pattern in OWN_FILES for path in sorted(folder.glob(pattern))), None)
+
+
+def _has_summary(folder: Path) -> bool:
+    """Whether a run, of a version without the mark perhaps, has ended there."""
+    try:
+        values = json.loads(text_of(folder / "summary.json", "a summary"))
+    except (ValueError, RecursionError):  # FileError as well
+        return False
+    return isinstance(values, dict) and {"status", "energy_residual"} <= set(values)
+
+
+def _has_checkpoint(folder: Path) -> bool:
+    """The same of a run that was stopped."""
+    for path in folder.glob("checkpoint*.npz"):
+        if path.is_file() and zipfile.is_zipfile(path):
+            with suppress(zipfile.BadZipFile, OSError), zipfile.ZipFile(path) as file:
+                if "fingerprint.npy" in file.namelist():
+                    return True
+    return False
 
 
 def write_whole(path: Path, write: Callable[[Path], None], older: Path | None = None) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from lithofrac.core import Energy, Run
+from lithofrac.results.checkpoint import Layout
 from lithofrac.results.columns import ENERGY_COLUMNS
 from lithofrac.results.cracks import FRAGMENT_COLUMNS, fragments
 
@@ -109,6 +110,19 @@ class Recorder:
             "fragments_seen": np.array([self.fragments_now, self._edges_seen]),
         }
         return kept | ({"probes": np.array(self.probes)} if self.probes else {})
+
+    def layout(self) -> Layout:
+        """Types and shapes of `arrays`, once there is a record."""
+        width = 2 + 2 * len(self.names) + len(self._contact_columns())
+        found = {
+            "history": ("f8", ("records", width)),
+            "energy": ("f8", ("records", len(ENERGY_COLUMNS))),
+            "fragments": ("f8", ("fragments", len(FRAGMENT_COLUMNS))),
+            "fragments_seen": ("i8", (2,)),
+        }
+        probes = len(self.run.problem.probes)
+        shape = ("records", probes, 1 + len(PROBE_COLUMNS))
+        return found | ({"probes": ("f8", shape)} if probes else {})
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
         """Take back what `arrays` gave."""

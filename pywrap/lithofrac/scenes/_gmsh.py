@@ -27,6 +27,11 @@ NOT_CLOSED = "not closed by"  # words of meshio on a section without an end
 FORMATS = "Gmsh's format 2.2 or 4.1"
 NAMED = "'scene.geo', "  # gmsh names its own copy of the text
 TIME_LIMIT = 600.0  # seconds; meshes of the suite take less than one
+OWN_TIME_LIMIT = 60.0  # of a script of anybody's, whose loops may have no end
+ENDLESS = (
+    "look for a loop or call that does not end, or ask for larger elements; a mesh that takes "
+    "longer can be made with gmsh and named as .msh"
+)
 
 HEAD = """\
 General.NumThreads = 1;
@@ -69,13 +74,17 @@ def mesh_from(geo: str) -> RawMesh:
     return _raw(meshed(HEAD + geo))
 
 
-def meshed(geo: str) -> meshio.Mesh:
+def meshed(geo: str, time_limit: float = TIME_LIMIT) -> meshio.Mesh:
     """What gmsh makes of a text, which may be anybody's: see `_script` for what is refused first.
+
+    Parameters
+    ----------
+    time_limit : after which gmsh is stopped [s]
 
     Raises
     ------
     GeoError
-        When gmsh finds a mistake in it, or leaves no elements.
+        When gmsh finds a mistake in it, leaves no elements, or is not done in time.
     MeshError
         When gmsh cannot be run.
     """
@@ -87,9 +96,11 @@ def meshed(geo: str) -> meshio.Mesh:
         try:
             done = subprocess.run(
                 command, cwd=folder, env=own_home, capture_output=True, encoding="utf-8",
-                errors="replace", timeout=TIME_LIMIT,
+                errors="replace", timeout=time_limit,
             )  # fmt: skip
-        except (OSError, subprocess.TimeoutExpired) as error:
+        except subprocess.TimeoutExpired:
+            raise GeoError(f"gmsh was stopped after {time_limit:g} s; {ENDLESS}") from None
+        except OSError as error:
             raise MeshError(f"gmsh could not be run: {error}") from None
         if done.returncode != 0 or not (folder / "scene.msh").exists():
             said = [*done.stdout.splitlines(), *done.stderr.splitlines()]

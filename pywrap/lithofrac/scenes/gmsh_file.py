@@ -9,7 +9,10 @@ from lithofrac.config.case import Case
 from lithofrac.config.errors import ConfigError, suggestion
 from lithofrac.config.gmsh_file import SCRIPT, BoundaryLoading
 from lithofrac.mesh_flaws import flaw
+from lithofrac.npz import MOST_BYTES
+from lithofrac.plain_file import refuse_other
 from lithofrac.problem import Measures, Mesh, PressureLoad, Problem, Ramp, VelocityLoad
+from lithofrac.scenes import _gmsh
 from lithofrac.scenes._common import settings
 from lithofrac.scenes._finish import finished
 from lithofrac.scenes._gmsh import GeoError, meshed, read
@@ -42,8 +45,11 @@ def mesh(case: Case, seed: int) -> Mesh:
     named = f"scene.file = {scene.file}"
     try:
         if scene.path.suffix == SCRIPT:
-            found = meshed(_script(scene.path.read_text(encoding="utf-8"), seed, named))
+            refuse_other(scene.path, "a script of gmsh")
+            text = _script(scene.path.read_text(encoding="utf-8"), seed, named)
+            found = meshed(text, _gmsh.OWN_TIME_LIMIT)
         else:
+            refuse_other(scene.path, "a mesh of gmsh", MOST_BYTES)
             found = read(scene.path)
     except (GeoError, UnicodeDecodeError) as error:
         raise ConfigError(f"{named}: {error}") from None

@@ -183,7 +183,7 @@ def test_the_share_of_the_roof_is_of_the_lower_one(monkeypatch):
     assert found["roofline_fraction"] == pytest.approx(machine.FLOPS["full_step"])
 
 
-@pytest.mark.one_build
+@pytest.mark.one_build  # what a special build takes of memory tells nothing
 @pytest.mark.parametrize(("pairs", "cells", "elements"), [(None, 64, 8192), ("0.1", 50, 5000)])
 def test_memory_is_that_of_the_elements(monkeypatch, pairs, cells, elements):
     monkeypatch.setattr(machine, "MEMORY_CELLS", (23, cells))

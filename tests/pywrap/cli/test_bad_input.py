@@ -6,8 +6,6 @@ import pytest
 
 from lithofrac.cli import main
 
-pytestmark = pytest.mark.no_core
-
 TRIAXIAL = Path("configs/cases/sandstone_triaxial.yaml").read_text()
 ROCK = Path("configs/materials/sandstone.yaml").read_text()
 

@@ -6,6 +6,7 @@ import zipfile
 
 import numpy as np
 import pytest
+from own_geometry import GROUPS, OWN, SQUARE, beside, sized
 
 from lithofrac.cli import main
 from lithofrac.errors import CheckpointError, FileError
@@ -246,6 +247,52 @@ def test_bodies_that_overlap_are_refused_with_their_depth(bar, refused, capsys):
     path, mesh = bar(sunk(0.9e-6), PLATENS)
     out = path.parent / "out"
     assert main(["run", str(path), "--mesh", str(mesh), "--out", str(out), "--quiet"]) == 0
+
+
+@pytest.mark.parametrize("contact", [(), ("--set", "contact.default_friction=0.5")])
+def test_parts_that_overlap_are_refused_without_contact_too(bar, refused, capsys, contact):
+    """Where nothing keeps parts apart, a mesh that lays them on each other is no case either."""
+
+    def sunk(arrays):
+        cut_open(arrays)
+        upper = arrays["nodes"][arrays["triangles"]].mean(axis=1)[:, 1] > 2e-3
+        arrays["nodes"][np.unique(arrays["triangles"][upper]), 1] -= 1e-4
+
+    path, mesh = bar(sunk)
+    capsys.readouterr()
+    said = refused(path, "--mesh", str(mesh), *contact)
+    assert said.startswith(f"lithofrac: {path}: {'contact' if contact else 'mesh'}: node ")
+    assert " m stands 1.00E-04 m inside another part; parts must not overlap at the start" in said
+    assert said.count("\n") == 1
+
+
+BAR_ACROSS = """\
+Point(5) = {-5, 8, 0, 30};
+Point(6) = {15, 8, 0, 30};
+Point(7) = {15, 12, 0, 30};
+Point(8) = {-5, 12, 0, 30};
+Line(5) = {5, 6};
+Line(6) = {6, 7};
+Line(7) = {7, 8};
+Line(8) = {8, 5};
+Curve Loop(2) = {5, 6, 7, 8};
+Plane Surface(2) = {2};
+Physical Surface("bar") = {2};
+Transfinite Curve {1, 2, 3, 4, 5, 6, 7, 8} = 2;
+Transfinite Surface {1, 2};
+"""
+
+
+@pytest.mark.parametrize("contact", ["", "contact: {}\n"], ids=["bare", "contact"])
+def test_bodies_of_a_geometry_that_cross_are_refused_by_check(tmp_path, capsys, contact):
+    """Two bars with nodes at their corners alone: none of them is inside the other."""
+    path = beside(tmp_path, sized(SQUARE + GROUPS, 30) + BAR_ACROSS, OWN + contact)
+    assert main(["check", str(path)]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith(f"lithofrac: {path}: {'contact' if contact else 'mesh'}: elements ")
+    assert " of two parts cross at " in said.err
+    assert said.err.endswith(" m deep; parts must not overlap at the start\n")
 
 
 def test_a_file_that_is_no_mesh(bar, refused, capsys, tmp_path):

@@ -1,6 +1,8 @@
 """Results that are damaged, or are not those of a run (pywrap/lithofrac/analysis/reading.py)."""
 
 import json
+from itertools import product
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -126,4 +128,57 @@ def test_a_summary_that_lacks_what_is_asked_for(make_run, said):
     path.write_text(json.dumps({"status": "completed"}))
     assert said("compare", path.parent) == (
         f"lithofrac: {path}: key 'energy' is missing, expected the summary of a run\n"
+    )
+
+
+@pytest.mark.parametrize("content", [b"a,b\n1,2,3\n1,2\n", b"a\n\xff\n", b'a\n"'])
+def test_a_report_of_tables_that_are_none(said, tmp_path, content):
+    path = tmp_path / "out" / "tables" / "results.csv"
+    path.parent.mkdir(parents=True)
+    path.write_bytes(content)
+    words = said("report", tmp_path / "out", "--out", tmp_path / "report.md")
+    assert words.startswith(f"lithofrac: {path}: ")
+    assert words.count("\n") == 1
+
+
+def test_a_report_into_a_page_of_other_bytes(said, tmp_path):
+    table, page = tmp_path / "out" / "tables" / "results.csv", tmp_path / "page.md"
+    table.parent.mkdir(parents=True)
+    table.write_text("a\n1\n")
+    page.write_bytes(b"\xff")
+    assert said("report", tmp_path / "out", "--out", page) == (
+        f"lithofrac: {page}: byte 0 is not UTF-8, expected a page in UTF-8 to refresh\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        *product(("numbers", "meshes", "updates"), (b"", b"a,b\n1,2\n1,2,3\n", b"\xff", "heading")),
+        ("numbers", "cells"),
+    ],
+)
+def test_references_that_are_none(make_run, said, tmp_path, name, content):
+    folder = tmp_path / "references"
+    folder.mkdir()
+    for path in Path("tests/references").glob("*.csv"):
+        (folder / path.name).write_bytes(path.read_bytes())
+    path = folder / f"{name}.csv"
+    lines = path.read_text().splitlines()
+    if isinstance(content, str):
+        cells = ",".join(["x"] * len(lines[0].split(",")))
+        content = "\n".join(lines[:1] + [cells] * (content == "cells")).encode()
+    path.write_bytes(content)
+    words = said("compare", make_run("a"), "--references", folder)
+    assert words.startswith(f"lithofrac: {path}: ")
+    assert words.count("\n") == 1
+
+
+def test_a_comparison_with_a_damaged_table(make_run, said):
+    path = make_run("a") / "history.parquet"
+    summary = json.loads((path.parent / "summary.json").read_text())
+    (path.parent / "summary.json").write_text(json.dumps({**summary, "energy": {}}))
+    path.write_bytes(b"PAR1")
+    assert said("compare", path.parent) == (
+        f"lithofrac: {path}: 4 bytes that are no Parquet table, expected one of a run\n"
     )

@@ -4,12 +4,14 @@ import json
 import os
 import signal
 
+import numpy as np
 import pytest
 
 from lithofrac.cli import main
 from lithofrac.core import Run
 from lithofrac.errors import CoreError
 from lithofrac.results import checkpoint
+from lithofrac.results.files import MARK
 
 SHORT = ["--set", "scene.element_size_mm=2.5", "--set", "output.records=20", "--quiet"]
 MINE = ("table.parquet", "checkpoint_of_mine.npz", "fields/mine.vtu", "fields/frame_mine.vtu")
@@ -175,3 +177,160 @@ def test_half_files_of_a_killed_run_go(finished):
         (finished / name).write_text("half")
     assert main(["run", "bar_wave", *SHORT, "--out", str(finished)]) == 0
     assert not [name for name in parts if (finished / name).exists()]
+
+
+# ---------------------------------------------------------------- files that no run has made
+
+
+@pytest.mark.parametrize("name", ["case.yaml", "mesh.npz", "summary.json", "fields/frame_0001.vtu"])
+def test_files_that_no_run_has_made_are_not_replaced(tmp_path, capsys, name):
+    out = tmp_path / "mine"
+    path = out / name
+    path.parent.mkdir(parents=True)
+    path.write_text('{"status": "mine"}')
+    before = files(out)
+    assert main(["run", "bar_wave", *SHORT, "--out", str(out)]) == 2
+    assert capsys.readouterr().err == (
+        f"lithofrac: --out {out}: the run would replace {path}, which none has made; expected a "
+        "new or empty folder, or one of an earlier run\n"
+    )
+    assert files(out) == before
+
+
+@pytest.mark.parametrize("gone", ["summary.json", "checkpoint", "mark"])
+def test_results_of_an_earlier_run_are_replaced(finished, gone):
+    """Also those of a version without the mark, and what Snakemake leaves of a run that failed."""
+    marks = {"summary.json", "checkpoint", "mark"} - {gone}
+    if "mark" not in marks:
+        (finished / MARK).unlink()
+    if "summary.json" not in marks:
+        (finished / "summary.json").unlink()
+    if "checkpoint" not in marks:
+        for path in finished.glob("checkpoint*.npz"):
+            path.unlink()
+    (finished / "history.parquet").unlink()
+    assert main(["run", "bar_wave", *SHORT, "--out", str(finished)]) == 0
+
+
+@pytest.mark.parametrize("name", ["summary.json", "checkpoint.npz"])
+def test_results_without_a_mark_are_known_by_one_file(finished, name):
+    for path in finished.glob("*"):
+        if path.name not in (name, "case.yaml", "fields"):
+            path.unlink()
+    (finished / MARK).unlink(missing_ok=True)
+    assert main(["run", "bar_wave", *SHORT, "--out", str(finished)]) == 0
+
+
+# ---------------------------------------------------------------- forged checkpoints
+
+
+def forge(path, change):
+    """Write a checkpoint anew with other arrays, under a right check sum."""
+    with np.load(path) as file:
+        arrays = {name: file[name] for name in file}
+    for name in ("digest", "format", "build"):
+        del arrays[name]
+    mark = str(arrays.pop("fingerprint"))
+    change(arrays)
+    checkpoint._write(path, mark, arrays)
+
+
+def without(name):
+    return lambda arrays: arrays.pop(name)
+
+
+def changed(name, how):
+    return lambda arrays: arrays.update({name: how(arrays[name])})
+
+
+FORGED = {
+    "state gone": (without("state"), "it lacks 'state'"),
+    "clocks gone": (without("clocks"), "it lacks 'clocks'"),
+    "history gone": (without("history"), "it lacks 'history'"),
+    "guards gone": (without("guards_first"), "it lacks 'guards_first'"),
+    "clocks of texts": (changed("clocks", lambda a: a.astype(str)), "'clocks' holds <U32"),
+    "one clock": (changed("clocks", lambda a: a[:1]), "'clocks' holds float64 of shape (1,)"),
+    "clocks NaN": (changed("clocks", lambda a: a * np.nan), "'clocks' holds what is no finite"),
+    "narrow history": (changed("history", lambda a: a[:, :-1]), "'history' holds float64 of "),
+    "few energies": (changed("energy", lambda a: a[:-1]), "'energy' holds float64 of shape ("),
+    "no records": (
+        lambda a: a.update({name: a[name][:0] for name in ("history", "energy", "probes")}),
+        "it holds no record",
+    ),
+    "short state": (changed("state", lambda a: a[:-1]), "checkpoint: it belongs to another model"),
+    "half numbers": (changed("state", lambda a: a.astype("f4")), "'state' holds float32"),
+    "finished as text": (changed("finished", lambda a: a.astype(str)), "'finished' holds <U5"),
+}
+
+
+@pytest.mark.parametrize(("change", "why"), FORGED.values(), ids=FORGED)
+def test_a_forged_checkpoint_is_refused_and_the_one_before_is_used(
+    interrupted, capsys, change, why
+):
+    newest, before = (interrupted / name for name in (checkpoint.NAME, checkpoint.PREVIOUS))
+    before.write_bytes(newest.read_bytes())
+    forge(newest, change)
+    capsys.readouterr()
+    words = ["run", "bar_wave", *SHORT, "--resume", "--out", str(interrupted)]
+    assert main(words) == 0
+    said = capsys.readouterr().err
+    assert said.startswith(f"lithofrac: {newest}: not a checkpoint of this run ({why}")
+    assert said.endswith(f"; going on from {checkpoint.PREVIOUS}\n")
+    assert said.count("\n") == 1
+
+
+def test_nothing_is_written_where_all_checkpoints_are_forged(interrupted, capsys):
+    (interrupted / checkpoint.PREVIOUS).unlink()
+    forge(interrupted / checkpoint.NAME, without("clocks"))
+    kept = files(interrupted)
+    capsys.readouterr()
+    assert main(["run", "bar_wave", *SHORT, "--resume", "--out", str(interrupted)]) == 2
+    assert capsys.readouterr().err == (
+        f"lithofrac: --resume: {interrupted / checkpoint.NAME}: not a checkpoint of this run (it "
+        "lacks 'clocks')\n"
+    )
+    assert files(interrupted) == kept
+
+
+# ---------------------------------------------------------------- what never ends, other bytes
+
+
+@pytest.mark.parametrize("what", ["pipe", "/dev/zero", "folder"])
+def test_a_checkpoint_that_is_no_regular_file_is_refused(interrupted, capsys, what):
+    (interrupted / checkpoint.PREVIOUS).unlink()
+    path = interrupted / checkpoint.NAME
+    path.unlink()
+    if what == "pipe":
+        os.mkfifo(path)
+    elif what == "folder":
+        path.mkdir()
+    else:
+        path.symlink_to(what)
+    capsys.readouterr()
+    assert main(["run", "bar_wave", *SHORT, "--resume", "--out", str(interrupted)]) == 2
+    assert capsys.readouterr().err == (
+        f"lithofrac: --resume: {path}: is no regular file, expected a checkpoint\n"
+    )
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["run", "bar_wave", "--out", "out/\udcff"],
+        ["run", "\udcff.yaml", "--out", "out"],
+        ["run", "bar_wave", "--mesh", "\udcff.npz", "--out", "out"],
+        ["check", "\udcff.yaml"],
+        ["mesh", "bar_wave", "--out", "\udcff.npz"],
+        ["plot", "curves", "\udcff", "--out", "a.svg"],
+        ["fit", "\udcff.csv", "--out", "a.yaml"],
+        ["point", "sandstone", "--out", "\udcff.parquet"],
+    ],
+)
+def test_paths_that_are_not_utf_8_are_refused_at_once(tmp_path, monkeypatch, capsys, words):
+    """They cost the tables of a run at its end."""
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 2
+    named = next(word for word in words if "\udcff" in word).replace("\udcff", "\\udcff")
+    said = f"lithofrac: {named}: is not UTF-8, expected words in UTF-8\n"
+    assert capsys.readouterr().err == said
+    assert not list(tmp_path.iterdir())

@@ -14,6 +14,7 @@ from lithofrac.config import find_case, load_case
 from lithofrac.core import Run
 from lithofrac.errors import CoreError
 from lithofrac.progress import Progress
+from lithofrac.results.files import MARK
 
 SHORT = ["--set", "scene.element_size_mm=2.5", "--set", "output.records=20"]
 
@@ -28,7 +29,7 @@ def test_a_run_fills_its_folder_and_says_so(tmp_path, capsys):
     assert (summary["status"], summary["case"]) == ("completed", "bar_wave")
     for name in ("history.parquet", "energy.parquet", "mesh.npz", "case.yaml", "fields.pvd"):
         assert (out / name).exists()
-    assert not list(out.glob(".*"))
+    assert [path.name for path in out.glob(".*")] == [MARK]
 
 
 def test_the_case_in_the_folder_is_the_case_as_run(tmp_path):

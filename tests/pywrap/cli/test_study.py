@@ -15,11 +15,13 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from lithofrac import study as starting
 from lithofrac.analysis.study import SUMMARY
 from lithofrac.cli import main
+from lithofrac.config.cost import OWN_ELEMENTS, Cost
 from lithofrac.results.columns import ENERGY_COLUMNS
 
-pytestmark = pytest.mark.no_core  # it runs cases, but what is tested is not the build of the core
+pytestmark = pytest.mark.no_core  # it runs cases, but what is tested is the study around them
 
 CASE = Path("configs/cases/single_element.yaml").resolve()
 STUDY = f"""\
@@ -277,3 +279,41 @@ def test_a_study_follows_the_geometry_file_of_its_base(tmp_path):
     (mine / "block.geo").write_text(BLOCK.replace("h = 10", "h = 5"))
     (fine,) = elements()
     assert fine > 3 * coarse[0]
+
+
+HOLES = f"""\
+title: Friction of two holes
+base: {Path("configs/examples/two_holes.yaml").resolve()}
+grid: {{contact.default_friction: [0.2, 0.4]}}
+name: f{{contact.default_friction}}
+quantities: [peak_stress_MPa]
+plot: {{x: contact.default_friction, y: [peak_stress_MPa]}}
+"""
+
+
+def test_an_own_geometry_asks_a_cluster_for_what_its_mesh_takes(tmp_path, monkeypatch):
+    """By elements and steps of the mesh, made once for both runs, instead of a fixed guess."""
+    import lithofrac.scenes
+
+    meshed, make_mesh = [], lithofrac.scenes.make_mesh
+    monkeypatch.setattr(
+        lithofrac.scenes, "make_mesh", lambda case: meshed.append(case) or make_mesh(case)
+    )
+    file, out = tmp_path / "study.yaml", tmp_path / "out"
+    file.write_text(HOLES)
+    study, texts = starting.checked(file)
+    costs = starting.own_costs(study)
+    assert list(costs) == ["f0.2", "f0.4"]
+    assert len(meshed) == 1
+    cost = Cost(**costs["f0.2"])
+    assert cost.elements == len(make_mesh(study.case("f0.2")).triangles) != OWN_ELEMENTS
+    (out / "cases").mkdir(parents=True)
+    starting._write_inputs(file, texts, out, costs)
+    done = subprocess.run(
+        [*(sys.executable, "-P", "-m", "snakemake", "--snakefile", str(starting.RULES)),
+         *("--directory", str(out), "--dry-run")],
+        capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    said = done.stdout + done.stderr
+    assert cost.group == "short"  # the fixed guess is not
+    assert said.count("Group job short") == 2, said

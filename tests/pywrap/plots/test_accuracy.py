@@ -55,5 +55,5 @@ def test_axes_hold_whole_decades_with_some_room():
 
 def test_another_table_is_refused(table, data_folder):
     table.write_text("a,b\n1,2\n")
-    with pytest.raises(DataError, match=r"expected one accuracy\.csv"):
+    with pytest.raises(DataError, match="column 'problem' is missing, expected problem"):
         accuracy.figure([table], data_folder)

@@ -170,7 +170,7 @@ def test_figure_of_nothing_is_refused(tmp_path):
 
 def test_file_that_is_no_bench_curve_is_refused(tmp_path):
     (tmp_path / "curve.parquet").touch()
-    with pytest.raises(DataError, match="not a curve of the bench"):
+    with pytest.raises(DataError, match="is not drawn, expected curves"):
         draw("single_element", [tmp_path / "curve.parquet"], tmp_path / "a.svg")
 
 

@@ -1,12 +1,13 @@
 """Geometries of one's own: what is refused, and in which words (scenes/gmsh_file.py)."""
 
 import re
+import time
 
 import pytest
 from own_geometry import APART, CAP, GROUPS, MSH, SQUARE, by_gmsh
 
 from lithofrac.config import ConfigError
-from lithofrac.scenes import make_mesh, make_problem
+from lithofrac.scenes import _gmsh, make_mesh, make_problem
 
 pytestmark = pytest.mark.no_core
 
@@ -197,3 +198,29 @@ def test_a_script_that_could_do_more_than_mesh_is_refused(refused, tmp_path, lin
 
 def test_words_that_only_begin_alike_are_not_refused(case_of):
     assert len(make_mesh(case_of(SQUARE + GROUPS + "Saved = 1; // Printing, Includes")).nodes)
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [
+        "For i In {1:1e15}\na = i;\nEndFor",
+        "For i In {1:1e15}\nPoint(1000 + i) = {i, 0, 0};\nEndFor",
+    ],
+)
+def test_a_loop_without_end_is_stopped_in_a_sentence(refused, monkeypatch, loop):
+    monkeypatch.setattr(_gmsh, "OWN_TIME_LIMIT", 3.0)
+    start = time.monotonic()
+    said = refused(f"{SQUARE}{GROUPS}{loop}\n")
+    assert time.monotonic() - start < 30.0
+    assert said.startswith("gmsh was stopped after 3 s; look for a loop or call that does not end")
+
+
+def test_a_recursion_without_end_is_refused(refused, monkeypatch):
+    monkeypatch.setattr(_gmsh, "OWN_TIME_LIMIT", 10.0)
+    said = refused(f"{SQUARE}{GROUPS}Macro Again\nCall Again;\nReturn\nCall Again;\n")
+    assert said.startswith("gmsh ")
+
+
+def test_a_loop_that_ends_is_meshed(case_of):
+    loop = "For i In {1:100}\na = i;\nEndFor\n"
+    assert len(make_mesh(case_of(SQUARE + GROUPS + loop)).nodes)
