@@ -336,7 +336,7 @@ def stability(options: Namespace) -> int:
 
 
 def accuracy(options: Namespace) -> int:
-    """Measure error against run time; says which runs of the sweep failed."""
+    """Measure error against run time; says which runs failed and which defaults lack a reason."""
     from lithofrac.accuracy.sweep import make_sweep
 
     failed = make_sweep(options.out, options.only, options.processes)

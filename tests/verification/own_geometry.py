@@ -62,7 +62,7 @@ loading:
   held: {bottom: y, left: x}
   pressed_MPa: {top: 1.0}
   ramp_transits: 40  # of half the height of the block
-  hold_transits: 80
+  hold_transits: 4
 """
 
 

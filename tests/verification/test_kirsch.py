@@ -79,7 +79,6 @@ def settled(wall_elements: int) -> Settled:
     changes = {
         "scene.wall_elements_per_radius": float(wall_elements),
         "scene.far_elements_per_radius": wall_elements / 4,
-        "loading.hold_transits": 2.0,  # after the smooth ramp there is nothing to wait for
     }
     case = load_case(CASE, changes)
     mesh = make_mesh(case)

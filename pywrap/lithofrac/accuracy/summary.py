@@ -6,11 +6,18 @@ import numpy as np
 import pandas as pd
 
 from lithofrac.accuracy.subject import Subject
-from lithofrac.analysis.front import cheapest, distance, observed_order, safe_error
+from lithofrac.analysis.front import (
+    DEFAULT,
+    FINEST,
+    TARGET,
+    cheapest,
+    distance,
+    observed_order,
+    safe_errors,
+)
 
-TARGET = 1.0  # %
 FAR = 1.5  # distance above which the default is explained
-DEFAULT, FINEST = "default", "finest"
+UNEXPLAINED = "NOT EXPLAINED"  # in place of the reason of a default that is far and has none
 COLUMNS = (
     "problem",
     "quantity",
@@ -34,6 +41,16 @@ def summarised(table: pd.DataFrame, subjects: dict[str, Subject]) -> pd.DataFram
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
+def unexplained(summary: pd.DataFrame) -> list[str]:
+    """One sentence for every default that is far from the front without a reason."""
+    return [
+        f"{row.problem}, {row.quantity}: the default lies {row.distance:.2g} from the front and "
+        f"has no reason, expected at most {FAR}"
+        for row in summary.itertuples()
+        if row.reason == UNEXPLAINED
+    ]
+
+
 def _row(subject: Subject, quantity: str, own: pd.DataFrame) -> dict:
     runs = own[own["knob"] != FINEST].reset_index(drop=True)  # it is held against itself
     default = int(np.flatnonzero(runs["knob"] == DEFAULT)[0])
@@ -51,26 +68,8 @@ def _row(subject: Subject, quantity: str, own: pd.DataFrame) -> dict:
         "its_error_percent": np.nan if best is None else error[best],
         "its_core_seconds": np.nan if best is None else cost[best],
         "distance": far,
-        "reason": subject.reasons.get(quantity, "") if far > FAR else "",
+        "reason": subject.reasons.get(quantity, UNEXPLAINED) if far > FAR else "",
     }
-
-
-def safe_errors(runs: pd.DataFrame) -> np.ndarray:
-    """Errors [%] that are not small by chance (`safe_error`), knob by knob; the default's as it is.
-
-    Parameters
-    ----------
-    runs : rows of one quantity of one problem, the default among them
-    """
-    work = runs["elements"].to_numpy(float) * runs["steps"].to_numpy(float)
-    error = runs["error_percent"].to_numpy(float)
-    knob = runs["knob"].to_numpy()
-    safe = error.copy()
-    for name in set(knob) - {DEFAULT}:
-        own = np.flatnonzero((knob == name) | (knob == DEFAULT))
-        kept = own[knob[own] == name]
-        safe[kept] = safe_error(work[own], error[own])[knob[own] == name]
-    return safe
 
 
 def order_of(runs: pd.DataFrame, subject: Subject) -> float:

@@ -12,7 +12,8 @@ import pandas as pd
 
 from lithofrac.accuracy.problems import SUBJECTS
 from lithofrac.accuracy.subject import Outcome, Setting, Subject
-from lithofrac.accuracy.summary import DEFAULT, FINEST, summarised
+from lithofrac.accuracy.summary import summarised, unexplained
+from lithofrac.analysis.front import DEFAULT, FINEST
 from lithofrac.config.errors import ConfigError
 from lithofrac.errors import CoreError
 from lithofrac.results.files import write_table, write_whole
@@ -44,7 +45,7 @@ def make_sweep(
 
     Returns
     -------
-    One sentence for every run that failed.
+    One sentence for every run that failed, and for every default that is far without a reason.
 
     Raises
     ------
@@ -74,8 +75,10 @@ def make_sweep(
         ignore_index=True,
     )
     _write(out / "accuracy", table)
-    _write(out / "accuracy_summary", summarised(table, SUBJECTS))
-    return [_line(job, ended) for job, ended in found.items() if isinstance(ended, str)]
+    summary = summarised(table, SUBJECTS)
+    _write(out / "accuracy_summary", summary)
+    failed = [_line(job, ended) for job, ended in found.items() if isinstance(ended, str)]
+    return failed + unexplained(summary)
 
 
 def run_one(name: str, number: int) -> Outcome | str:

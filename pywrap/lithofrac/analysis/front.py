@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
 
+TARGET = 1.0  # [%], error that a user is told the cost of
+DEFAULT, FINEST = "default", "finest"  # in place of a knob, in a table of runs
 SAME_COST = 1.02  # work over another at which a run counts as dearer
 SAME_ERROR = 1.1  # error over that of the default up to which it counts as equal
 
@@ -56,6 +59,28 @@ def safe_error(work: np.ndarray, error: np.ndarray) -> np.ndarray:
     dearer = work[None, :] > SAME_COST * work[:, None]
     worst = np.where(dearer, bad[None, :], -np.inf).max(axis=1, initial=-np.inf)
     return np.where(np.isfinite(error), np.maximum(worst, error), np.nan)
+
+
+def safe_errors(runs: pd.DataFrame) -> np.ndarray:
+    """Errors [%] that are not small by chance (`safe_error`), knob by knob; the default's as it is.
+
+    Parameters
+    ----------
+    runs : rows of one quantity of one problem in `accuracy.csv`, the default among them
+
+    Returns
+    -------
+    (n,); infinite where a dearer run of the same knob has no number.
+    """
+    work = runs["elements"].to_numpy(float) * runs["steps"].to_numpy(float)
+    error = runs["error_percent"].to_numpy(float)
+    knob = runs["knob"].to_numpy()
+    safe = error.copy()
+    for name in set(knob) - {DEFAULT}:
+        own = np.flatnonzero((knob == name) | (knob == DEFAULT))
+        kept = own[knob[own] == name]
+        safe[kept] = safe_error(work[own], error[own])[knob[own] == name]
+    return safe
 
 
 def cheapest(cost: np.ndarray, error: np.ndarray, target: float) -> int | None:

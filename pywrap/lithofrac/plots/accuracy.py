@@ -1,4 +1,4 @@
-"""Error against core seconds: one panel a problem and quantity, the Pareto front, the default."""
+"""Error against core seconds: a panel a problem and quantity, the front, how far the default is."""
 
 from pathlib import Path
 
@@ -8,7 +8,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from lithofrac.analysis.front import pareto_front
+from lithofrac.analysis.front import (
+    DEFAULT,
+    FINEST,
+    TARGET,
+    distance,
+    pareto_front,
+    safe_errors,
+)
 from lithofrac.data import DataError
 from lithofrac.data.csv_file import read_columns
 from lithofrac.plots import style
@@ -17,7 +24,6 @@ COLUMNS = 3
 PANEL_HEIGHT = 1.75  # inches
 LEGEND_HEIGHT = 0.6  # inches
 FLOOR = 1e-4  # [%], smaller errors are drawn there
-TARGET = 1.0  # [%]
 MARGIN = 1.15  # about the values
 SIZE = (style.BLUE, "o", "element size, strain step")
 RATE = (style.ORANGE, "s", "loading rate")
@@ -33,8 +39,7 @@ KNOBS = {
     "insertion": (style.RED, "P", "insertion mode"),
     "release_steps": (style.GREY, "X", "release steps"),
 }
-DEFAULT, FINEST = "default", "finest"
-NEEDED = ["problem", "quantity", "knob", "error_percent", "core_seconds"]
+NEEDED = ["problem", "quantity", "knob", "error_percent", "core_seconds", "elements", "steps"]
 
 
 def figure(inputs: list[Path], data: Path) -> Figure:
@@ -69,7 +74,7 @@ def figure(inputs: list[Path], data: Path) -> Figure:
 
 
 def draw_panel(panel: Axes, own: pd.DataFrame) -> None:
-    """All runs of one quantity of one problem."""
+    """All runs of one quantity of one problem; the front is that of errors not small by chance."""
     cost = own["core_seconds"].to_numpy(float)
     error = own["error_percent"].clip(lower=FLOOR).to_numpy(float)
     knob = own["knob"].to_numpy()
@@ -77,11 +82,18 @@ def draw_panel(panel: Axes, own: pd.DataFrame) -> None:
         at = knob == name
         if at.any():
             panel.loglog(cost[at], error[at], marker, color=colour, ms=4.0, ls="", label=words)
-    on = pareto_front(cost, error)
+    safe = safe_errors(own)
+    on = pareto_front(cost, safe)
+    front = safe[on].clip(min=FLOOR)
     panel.step(
-        cost[on], error[on], where="post", color=style.BLACK, lw=0.9, zorder=1, label="Pareto front"
+        cost[on], front, where="post", color=style.BLACK, lw=0.9, zorder=1, label="Pareto front"
     )
     at = knob == DEFAULT
+    far = distance(cost, safe, int(np.flatnonzero(at)[0]), TARGET)
+    panel.annotate(
+        f"distance {far:.1f}", (0.97, 0.95), xycoords="axes fraction", ha="right", va="top",
+        fontsize=6.5,
+    )  # fmt: skip
     panel.loglog(
         cost[at], error[at], "*", ls="", ms=11.0, mfc="none", mec=style.BLACK, label="default"
     )

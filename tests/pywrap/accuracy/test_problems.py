@@ -2,12 +2,14 @@
 
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from lithofrac.accuracy.problems import SUBJECTS, contacts, cylinder, elastic, fracture
+from lithofrac.accuracy.problems import SUBJECTS, cases, contacts, cylinder, elastic, fracture
 from lithofrac.accuracy.problems.material_point import END_STRAIN, material_point
 from lithofrac.analysis.kirsch_series import plate
 from lithofrac.config.suite import find_case
@@ -43,9 +45,8 @@ def test_every_knob_is_turned_from_a_default_that_it_has(name):
         ("bar_wave", "bar_wave"),
         ("kirsch", "kirsch"),
         ("sandstone_triaxial", "sandstone_triaxial_p10"),
-        ("sandstone_soft", "sandstone_soft_p10"),
         ("hole_r25", "hole_r25.0"),
-        ("punch", "punch_gf60"),
+        ("punch", "punch_discrete"),
     ],
 )
 def test_default_is_that_of_the_case(name, case):
@@ -67,6 +68,113 @@ def test_default_is_that_of_the_case(name, case):
         assert default["insertion"] == found["fracture"]["mode"]
     if "release_steps" in default:
         assert default["release_steps"] == found["fracture"].get("release_steps", "auto")
+
+
+@pytest.mark.parametrize("name", [name for name, s in SUBJECTS.items() if s.finest is not None])
+def test_something_finer_and_something_slower_than_the_default_is_swept(name):
+    """Else `for 1 % take` has no answer where the default misses 1 %; no run is the finest."""
+    subject = SUBJECTS[name]
+    for knob, finest in subject.finest.items():
+        assert finest <= min(subject.sweep.get(knob, (finest,))), knob
+        if name != "material_point":
+            assert min(subject.sweep[knob]) < subject.default[knob], knob
+    assert all(
+        any(knobs[knob] > value for knob, value in subject.finest.items())
+        for turned, knobs in subject.settings()
+        if turned != "finest"
+    )
+
+
+class Stopped(Exception):
+    """In place of a run."""
+
+
+@pytest.fixture
+def problem_of(monkeypatch):
+    """Problem that a subject would run with these knobs; a mesh is made once."""
+    meshes = {}
+
+    def kept(case):
+        scene = str(case.scene)
+        if scene not in meshes:
+            meshes[scene] = make_mesh(case)
+        return meshes[scene]
+
+    def stopped(problem, out):
+        raise Stopped(problem)
+
+    def made(name, **knobs):
+        subject = SUBJECTS[name]
+        with pytest.raises(Stopped) as raised:
+            subject.run(**(subject.default | COARSE[name] | knobs))
+        return raised.value.args[0]
+
+    monkeypatch.setattr(cases, "simulate", stopped)
+    monkeypatch.setattr(cases, "make_mesh", kept)
+    return made
+
+
+# element sizes [mm] of a quick mesh
+COARSE = {
+    "sandstone_triaxial": {"element_size_mm": 2.5},
+    "hole_r25": {"element_size_mm": 25.0 / 4.0},
+    "punch": {"element_size_mm": 2.0},
+}
+# knob -> what of the problem it is to change
+TURNED = {
+    "speed_m_s": lambda problem: max(abs(load.speed) for load in problem.velocity_loads),
+    "time_step_factor": lambda problem: problem.time_step_factor,
+    "damping_fraction": lambda problem: problem.damping.fraction,
+    "contact_tolerance": lambda problem: problem.contact.tolerance,
+    "insertion": lambda problem: problem.fracture.mode if problem.fracture else "off",
+    "release_steps": lambda problem: problem.fracture.release_steps,
+}
+
+
+@pytest.mark.parametrize("name", COARSE)
+def test_every_knob_of_a_case_turns_what_it_is_named_after(problem_of, name):
+    """And nothing else, but for the end of a run of another speed."""
+    subject = SUBJECTS[name]
+    default = problem_of(name)
+    for knob in set(subject.sweep) - {"element_size_mm"}:
+        assert TURNED[knob](default) == (
+            None if subject.default[knob] == "auto" else subject.default[knob]
+        )
+        for value in subject.sweep[knob]:
+            turned = problem_of(name, **{knob: value})
+            assert TURNED[knob](turned) == value
+            for other in set(TURNED) & set(subject.sweep) - {knob}:
+                if (knob, value) != ("insertion", "off") or other != "release_steps":
+                    assert TURNED[other](turned) == TURNED[other](default), (knob, other)
+    fine = problem_of(name, element_size_mm=0.7 * COARSE[name]["element_size_mm"])
+    assert len(fine.mesh.triangles) > 1.5 * len(default.mesh.triangles)
+
+
+def test_punch_cracks_before_its_peak_which_lies_within_the_run(monkeypatch):
+    """On elements twice as large as the default, where 5 of its 25 cracks are left."""
+    histories = []
+    peak = cases._peak
+    monkeypatch.setattr(cases, "_peak", lambda run: histories.append(run.history) or peak(run))
+    found = cases.punch(**(cases.PUNCH.default | COARSE["punch"]))
+    (history,) = histories
+    at = int(history["axial_stress_MPa"].to_numpy().argmax())
+    assert history["cracks"][at] > 0
+    assert at < 0.95 * len(history)
+    assert found.values["peak stress"] == history["axial_stress_MPa"][at]
+
+
+def test_sandstone_reaches_its_peak_within_the_run():
+    found = cases.sandstone(**(cases.SANDSTONE.default | COARSE["sandstone_triaxial"]))
+    assert found.values["peak stress"] > 0.0
+
+
+def test_a_stress_that_still_rises_at_the_end_is_no_peak():
+    def peak_of(stress):
+        run = SimpleNamespace(history=pd.DataFrame({"axial_stress_MPa": stress}))
+        return cases._peak(run)["peak stress"]
+
+    assert peak_of([0.0, 2.0, 1.0]) == 2.0
+    assert np.isnan(peak_of([0.0, 1.0, 2.0]))
 
 
 def test_every_knob_of_the_sweep_has_a_mark_in_the_figure():

@@ -1,10 +1,14 @@
 """Tables of the sweep (accuracy/sweep.py, summary.py) from made-up outcomes."""
 
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from lithofrac.accuracy import sweep
 from lithofrac.accuracy.subject import Outcome, Subject
-from lithofrac.accuracy.summary import summarised
+from lithofrac.accuracy.summary import FAR, UNEXPLAINED, summarised, unexplained
 from lithofrac.accuracy.sweep import COLUMNS, make_sweep, table_of
 from lithofrac.config.errors import ConfigError
 from lithofrac.errors import CoreError
@@ -64,6 +68,44 @@ def test_a_reason_is_given_where_the_default_is_far_from_the_front_and_only_ther
     assert summarised(table_of(said, KNOWN), {"made_up": said})["reason"][0] == "it is slow"
     near = outcomes((0.008, 2.0), (0.032, 1.0), (0.002, 64.0), (0.02, 1.5), (0.03, 1.2))
     assert summarised(table_of(said, near), {"made_up": said})["reason"][0] == ""
+
+
+def test_a_default_that_is_far_without_a_reason_is_told():
+    summary = summarised(table_of(subject(), KNOWN), {"made_up": subject()})
+    assert summary["reason"][0] == UNEXPLAINED
+    assert unexplained(summary) == [
+        "made_up, peak: the default lies 4 from the front and has no reason, expected at most 1.5"
+    ]
+    said = subject(reasons={"peak": "it is slow"})
+    assert not unexplained(summarised(table_of(said, KNOWN), {"made_up": said}))
+
+
+@pytest.mark.parametrize(("cost", "words"), [(3.0, ""), (3.1, UNEXPLAINED)])
+def test_a_reason_is_due_above_one_and_a_half(cost, words):
+    runs = outcomes((0.008, cost), (0.032, 1.0), (0.002, 64.0), (0.02, 1.5), (0.009, 2.0))
+    assert summarised(table_of(subject(), runs), {"made_up": subject()})["reason"][0] == words
+
+
+def test_a_sweep_with_a_default_that_lacks_a_reason_says_so(tmp_path, monkeypatch):
+    made_up = subject(name="bar_wave", sweep={"element_size_mm": (2.0,)}, run=None)
+    monkeypatch.setattr(sweep, "SUBJECTS", {"bar_wave": made_up})
+    monkeypatch.setattr(sweep, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1))
+    runs = dict(enumerate(outcomes((0.008, 8.0), (0.009, 2.0))))
+    monkeypatch.setattr(sweep, "run_one", lambda name, number: runs[number])
+    (told,) = make_sweep(tmp_path, [], 1, say=lambda _: None)
+    assert told.startswith("bar_wave, peak: the default lies 4 from the front and has no reason")
+
+
+def test_every_default_on_the_sheet_that_is_far_has_a_reason():
+    """The table as it is published; `lithofrac accuracy` marks what has none."""
+    page = (Path(__file__).parents[3] / "reports/sheets/11_accuracy.md").read_text("utf-8")
+    table = page.split("<!-- table: accuracy_summary")[1].split("<!-- end -->")[0]
+    head, _, *rows = [line.strip("| ").split(" | ") for line in table.splitlines()[1:]]
+    assert len(rows) > 9
+    for row in (dict(zip(head, cells, strict=True)) for cells in rows):
+        where = f"{row['problem']}, {row['quantity']}"
+        assert row["reason"] != UNEXPLAINED, where
+        assert float(row["distance"]) <= FAR or len(row["reason"]) > len(UNEXPLAINED), where
 
 
 def test_own_finest_solution_is_what_the_others_are_held_against():

@@ -14,7 +14,6 @@ SUBJECTS: dict[str, Subject] = {
         fracture.CRACK_BAND,
         contacts.HERTZ,
         cases.SANDSTONE,
-        cases.SOFT_SANDSTONE,
         cases.HOLE,
         cases.PUNCH,
     )

@@ -105,8 +105,9 @@ def wave_velocity(case: Case, depth: np.ndarray, time: float) -> np.ndarray:
 
 
 RESTS = (
-    "The mesh sets the error, the rest after the ramp (`hold_transits`) most of the cost. The "
-    "stress needs none; the case keeps it so that nothing of the ramp is left in what it shows."
+    "The mesh sets the error. A ramp of 10 transits has the same error at 0.6 of the cost, but "
+    "leaves a kinetic energy of 4e-6 of the elastic one; that of the default is 3e-7, and below "
+    "1e-6 is asked for (`tests/verification/test_kirsch.py`)."
 )
 
 KIRSCH = Subject(
@@ -116,14 +117,14 @@ KIRSCH = Subject(
     {
         "element_size_mm": 25.0 / 12.0,
         "ramp_transits": 20.0,
-        "hold_transits": 40.0,
+        "hold_transits": 2.0,
         "time_step_factor": 0.9,
         "damping_fraction": 0.3,
     },
     {
         "element_size_mm": (25.0 / 4.0, 25.0 / 6.0, 25.0 / 24.0),
         "ramp_transits": (1.0, 5.0, 10.0, 40.0),
-        "hold_transits": (0.0, 2.0, 10.0),
+        "hold_transits": (0.0, 10.0, 40.0),
         "time_step_factor": (0.3, 0.6),
         "damping_fraction": (0.0, 0.1, 0.9),
     },
@@ -143,7 +144,7 @@ BAR_WAVE = Subject(
     },
     ("velocity, L2",),
     reasons={
-        "velocity, L2": "The case reads the arrival of the front, which has to be sharp; it takes "
-        "a fraction of a second."
+        "velocity, L2": "A choice: 40 elements over the front in place of 16 at 1.25 mm, an error "
+        "of 0.1 % in place of 0.7 %, for 0.02 core seconds."
     },
 )
