@@ -46,7 +46,7 @@ contains
 
    !> Let the bodies of a mesh crack.
    subroutine new_fracture(fracture, mesh, poisson, mode, weights, release_steps, reset, &
-         interval, status)
+         interval, least_factor, status)
       type(fracture_type), intent(out) :: fracture
       type(mesh_type), intent(in) :: mesh
       real(wp), intent(in) :: poisson(:)          !! (n_bodies)
@@ -55,6 +55,7 @@ contains
       integer, intent(in) :: release_steps
       integer, intent(in) :: reset
       integer, intent(in) :: interval
+      real(wp), intent(in) :: least_factor        !! F_p from which a node cracks
       type(status_type), intent(out) :: status
 
       integer :: i
@@ -65,11 +66,14 @@ contains
          call set_failure(status, bad_input, "fracture: no such mode, weights or reset")
       else if (release_steps < -1 .or. interval < 1) then
          call set_failure(status, bad_input, "fracture: needs release >= 0 and interval >= 1 steps")
+      else if (.not. least_factor >= 1.0_wp) then
+         call set_failure(status, bad_input, "fracture: least_factor must be at least 1")
       else
          call new_topology(fracture%topology, mesh, status)
       end if
       fracture%rules%mode = mode
       fracture%rules%weights = weights
+      fracture%rules%least_factor = least_factor
       fracture%rules%guard%poisson = poisson
       fracture%release_steps = release_steps
       fracture%reset = reset

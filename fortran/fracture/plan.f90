@@ -28,6 +28,7 @@ module lithofrac_fracture_plan
       integer :: weights = by_volume    !! as in `fracture/failure_map`
       integer :: most_cracks = 50       !! planned at a time
       type(guard_type) :: guard         !! of elements that are cut
+      real(wp) :: least_factor = 1.0_wp !! F_p from which a node cracks, not below 1
    end type rules_type
 
    !> One crack to insert.
@@ -39,7 +40,7 @@ module lithofrac_fracture_plan
 
 contains
 
-   !> Plan cracks at nodes with F_p >= 1, in the order (-F_p, node).
+   !> Plan cracks at nodes with F_p >= 1, or what the rules say, in the order (-F_p, node).
    !>
    !> A mean reaches 1 only where an element does, so other nodes are not looked at.
    pure subroutine plan_cracks(mesh, topology, factor, normal, rules, retry, cracks, n_waiting, &
@@ -64,7 +65,7 @@ contains
 
       n_closed = 0
       n = 0
-      call find_failed(mesh, topology, factor, normal, rules%weights, retry, nodes, failures)
+      call find_failed(mesh, topology, factor, normal, rules, retry, nodes, failures)
       allocate (planned(min(size(nodes), rules%most_cracks)))
       allocate (locked(merge(mesh%n_elements, 0, size(nodes) > 0)), source=.false.)
       order = descending(failures%factor)
@@ -87,13 +88,13 @@ contains
       n_waiting = size(nodes) - n - n_closed
    end subroutine plan_cracks
 
-   !> Nodes with F_p >= 1, ascending, and what failed there.
-   pure subroutine find_failed(mesh, topology, factor, normal, weights, retry, nodes, failures)
+   !> Nodes with F_p >= 1, or what the rules say, ascending, and what failed there.
+   pure subroutine find_failed(mesh, topology, factor, normal, rules, retry, nodes, failures)
       type(mesh_type), intent(in) :: mesh
       type(topology_type), intent(in) :: topology
       real(wp), intent(in) :: factor(:)
       real(wp), intent(in) :: normal(:, :)
-      integer, intent(in) :: weights
+      type(rules_type), intent(in) :: rules
       real(wp), intent(in) :: retry(:)
       integer, allocatable, intent(out) :: nodes(:)
       type(nodal_failure_type), allocatable, intent(out) :: failures(:)
@@ -113,8 +114,9 @@ contains
       do node = 1, mesh%n_nodes
          if (.not. near(node)) cycle
          call fan_of_node(mesh, topology, node, fan)
-         if (.not. mean_factor(mesh, factor, weights, fan) >= max(1.0_wp, retry(node))) cycle
-         call average_at_node(mesh, topology, node, factor, normal, weights, fan, failure)
+         if (.not. mean_factor(mesh, factor, rules%weights, fan) &
+            >= max(rules%least_factor, retry(node))) cycle
+         call average_at_node(mesh, topology, node, factor, normal, rules%weights, fan, failure)
          if (.not. failure%agreement > 0.0_wp) cycle
          n = n + 1
          nodes(n) = node

@@ -150,7 +150,9 @@ contains
 
       rock%strength_scale = rock%tensile_strength
       if (rock%compression) then
-         rock%strength_scale = max(rock%strength_scale, maxval(rock%cohesion%y(:rock%cohesion%n)))
+         associate (cohesion => rock%cohesion%y(:rock%cohesion%n))  ! planes out of reach set none
+            rock%strength_scale = max(rock%strength_scale, maxval(cohesion, cohesion < never))
+         end associate
          call sine_cosine(1, rock%friction%y(0:0), sine, cosine)
          rock%sin_phi0 = sine(1)
          rock%c_cos_phi0 = rock%cohesion%y(0)*cosine(1)

@@ -323,13 +323,15 @@ contains
    end subroutine tag_surface
 
    !> Let bodies crack, after loads, contact and tags.
-   subroutine add_fracture(model, mode, weights, release_steps, reset, interval, status)
+   subroutine add_fracture(model, mode, weights, release_steps, reset, interval, least_factor, &
+         status)
       type(model_type), intent(inout) :: model
       integer, intent(in) :: mode              !! as `fracture/arms`
       integer, intent(in) :: weights           !! as `fracture/failure_map`
       integer, intent(in) :: release_steps     !! -1: by the length of the crack
       integer, intent(in) :: reset             !! as `fracture/element_failure`
       integer, intent(in) :: interval          !! steps between failure maps
+      real(wp), intent(in) :: least_factor     !! F_p from which a node cracks
       type(status_type), intent(out) :: status
 
       integer :: i
@@ -340,7 +342,7 @@ contains
          return
       end if
       call new_fracture(model%fracture, model%mesh, model%rocks%poisson, mode, weights, &
-         release_steps, reset, interval, status)
+         release_steps, reset, interval, least_factor, status)
       if (status%code /= ok) return
       associate (topology => model%fracture%topology)
          model%tagged = find_edges(model%mesh, topology, model%tag_nodes)

@@ -185,13 +185,15 @@ contains
    end subroutine run_tag_surface
 
    !> Let bodies crack, after loads, contact and tags.
-   subroutine run_add_fracture(run, mode, weights, release_steps, reset, interval, code, message)
+   subroutine run_add_fracture(run, mode, weights, release_steps, reset, interval, least_factor, &
+         code, message)
       integer(c_int), intent(in) :: run
       integer(c_int), intent(in) :: mode               !! as `fracture/arms`
       integer(c_int), intent(in) :: weights            !! as `fracture/failure_map`
       integer(c_int), intent(in) :: release_steps      !! -1: by the length of the crack
       integer(c_int), intent(in) :: reset              !! as `fracture/element_failure`
       integer(c_int), intent(in) :: interval           !! steps between failure maps
+      real(c_double), intent(in) :: least_factor       !! F_p from which a node cracks
       integer(c_int), intent(out) :: code
       character(len=256), intent(out) :: message
 
@@ -199,7 +201,8 @@ contains
 
       call check_handle(run, code, message)
       if (code /= ok) return
-      call add_fracture(slots(run)%model, mode, weights, release_steps, reset, interval, status)
+      call add_fracture(slots(run)%model, mode, weights, release_steps, reset, interval, &
+         least_factor, status)
       call export_status(status, code, message)
    end subroutine run_add_fracture
 

@@ -196,6 +196,7 @@ class Run:
             -1 if fracture.release_steps is None else fracture.release_steps,
             RESETS[fracture.reset],
             fracture.interval,
+            fracture.least_factor,
         )
 
     def __del__(self) -> None:

@@ -16,6 +16,7 @@ from lithofrac.mesh_flaws import flaw
 from lithofrac.npz import arrays_of
 
 EXPECTED = "a mesh of `lithofrac mesh`"
+NEVER = 1e30  # a failure factor that no node reaches
 
 
 @dataclass(frozen=True)
@@ -200,6 +201,7 @@ class Fracture:
     reset : "normal", failed elements count their failure anew across the crack and regain
         nothing unless they stand alone, or "paper", all their state variables
     interval : steps between two failure maps; at 5 a crack may still run as fast as surface waves
+    least_factor : F_p of eq. 22 from which a node cracks, not below 1; with `NEVER` none does
     """
 
     mode: str = "inter_element"
@@ -207,6 +209,7 @@ class Fracture:
     release_steps: int | None = None
     reset: str = "normal"
     interval: int = 5
+    least_factor: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -50,16 +50,16 @@ rule make_leave_out:
     input:
         DECIDING,
         SPEED_SOURCES,
-        suite="configs/suite_quick.yaml",
+        suites=["configs/suite_quick.yaml", "configs/suite_leave_out.yaml"],
     output:
         SPEED[1],
     log:
         f"{OUT}/log/leave_out.txt",
     threads: 64
     message:
-        "Run the quick suite with what it needs and with everything on"
+        "Run the quick suite and more with what it needs and with everything on"
     shell:
-        "python -m lithofrac.benchmark.leave_out {input.suite} --out {output} > {log} 2>&1"
+        "python -m lithofrac.benchmark.leave_out {input.suites} --out {output} > {log} 2>&1"
 
 
 rule make_growth:

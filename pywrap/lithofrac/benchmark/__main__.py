@@ -10,6 +10,9 @@ from lithofrac.benchmark import machine
 from lithofrac.benchmark.rows import measure
 from lithofrac.results.files import write_json
 
+# what the memory is of -> contact pairs an element; the discrete ones have all that a step may do
+MEMORY = {"continuum": None, "discrete_0.1": "0.1", "discrete_0.5": "0.5"}
+
 
 def line(row: dict) -> str:
     """A row in words."""
@@ -43,11 +46,12 @@ def main(argv: list[str] | None = None) -> None:
     for row in measure(options.repeat):
         print(line(row), flush=True)
         rows.append(row)
-    used = machine.memory()
-    print(
-        f"memory {used['resident_bytes_per_element']:.0f} bytes an element, "
-        f"{used['peak_bytes_per_element']:.0f} at the peak"
-    )
+    used = {name: machine.memory(pairs) for name, pairs in MEMORY.items()}
+    for name, own in used.items():
+        print(
+            f"{name}: memory {own['resident_bytes_per_element']:.0f} bytes an element, "
+            f"{own['peak_bytes_per_element']:.0f} at the peak"
+        )
     options.out.parent.mkdir(parents=True, exist_ok=True)
     described = {
         "processor": platform.processor() or platform.machine(),

@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from lithofrac.config import Material
+from lithofrac.config.case import DampingSection
 from lithofrac.core import Run
 from lithofrac.kernels import bare_elastic
-from lithofrac.problem import Mesh, Problem, Ramp, VelocityLoad
+from lithofrac.problem import Contact, Damping, Fracture, Mesh, Problem, Ramp, VelocityLoad
 from lithofrac.results.recorder import Recorder
 from lithofrac.scenes._rectangle import rectangle
 
@@ -22,10 +23,18 @@ SETTLING = 200  # steps in which contact finds its impulses
 EVERY = 100  # steps between records; a test of 1e5 steps has 1000
 ROCK = "quartzite"
 STRONGER = 10.0  # of the rock that does not yield
+# Pairs an element -> squares along a side of the block -> squares along a side of a piece.
+PIECES = {
+    "0.02": {23: 12, 50: 25, 158: 50, 316: 50},
+    "0.1": {23: 8, 50: 9, 158: 11, 316: 11},
+    "0.5": {23: 3, 50: 3, 158: 3, 316: 3},
+}
 # Choice: from just beyond the strength, and so slowly that the core takes it for slow motion; the
 # strength of the rock still rises over more than twice the strain that the windows add.
 START = 1.0 + 1e-6  # of the strain at which the layer yields
 SPEED = 1e-2  # of the upper side [m/s]
+
+DAMPED = Damping(DampingSection().fraction)  # relative to affine motion, as a case has it
 
 
 def square(cells: int, seed: int = 2) -> Mesh:
@@ -56,13 +65,7 @@ def yielding(mesh: Mesh, material: Material, share: float) -> Run:
     share : of the elements, 0 to 1
     """
     weak = round(share * len(mesh.triangles))
-    strong = material.model_copy(
-        update={
-            "tensile_strength_MPa": STRONGER * material.tensile_strength_MPa,
-            "fracture_energy_J_m2": STRONGER**2 * material.fracture_energy_J_m2,
-            "cohesion_MPa": tuple(STRONGER * c for c in material.cohesion_MPa),
-        }
-    )
+    strong = stronger(material)
     body = (np.arange(len(mesh.triangles)) >= weak).astype(np.int32)
     both = replace(mesh, body=body, body_names=("weak", "strong"))
     rocks = (material, strong)
@@ -82,6 +85,16 @@ def yielding(mesh: Mesh, material: Material, share: float) -> Run:
     run = Run(Problem(both, False, rocks, loads, (), 1.0, probes=probes))
     run.set_motion(strain * both.nodes * [side, -1.0], both.nodes * rate)
     return run
+
+
+def stronger(material: Material) -> Material:
+    """The material `STRONGER` times as strong, as stiff and as brittle."""
+    more = {
+        "tensile_strength_MPa": STRONGER * material.tensile_strength_MPa,
+        "fracture_energy_J_m2": STRONGER**2 * material.fracture_energy_J_m2,
+        "cohesion_MPa": tuple(STRONGER * c for c in material.cohesion_MPa),
+    }
+    return material.model_copy(update=more)
 
 
 def _strength(material: Material) -> float:
@@ -111,23 +124,48 @@ def in_pieces(mesh: Mesh, side: float) -> Mesh:
     side : of a square, a multiple of its element size [m]
     """
     column, row = np.floor(mesh.centroids() / side).astype(int).T
-    piece = np.repeat(column + row * (column.max() + 1), 3)
-    (node, _), copy = np.unique([mesh.triangles.ravel(), piece], axis=1, return_inverse=True)
-    return replace(mesh, nodes=mesh.nodes[node], triangles=copy.reshape(-1, 3).astype(np.int32))
+    piece = column + row * (column.max() + 1)
+    n_pieces = piece.max() + 1
+    both, copy = np.unique(
+        mesh.triangles.ravel() * n_pieces + np.repeat(piece, 3), return_inverse=True
+    )
+    triangles = copy.reshape(-1, 3).astype(np.int32)
+    return replace(mesh, nodes=mesh.nodes[both // n_pieces], triangles=triangles)
+
+
+def cut_square(cells: int, pairs: str) -> Mesh:
+    """The square in pieces that have so many contact pairs an element, a key of `PIECES`."""
+    return in_pieces(square(cells, seed=1), PIECES[pairs][cells] * SIDE / cells)
 
 
 def pieces(mesh: Mesh, material: Material, **changes) -> Run:
-    """The pieces under uniaxial stress, pressed on from above."""
+    """The pieces under uniaxial stress, pressed on from above, with friction between them."""
     low, high = (np.flatnonzero(abs(mesh.nodes[:, 1] - y) < 1e-9) for y in (0.0, SIDE))
     loads = (
         VelocityLoad("bottom", low.astype(np.int32), 1),
         VelocityLoad("top", high.astype(np.int32), 1, -0.1, Ramp(0.0, 1e-5)),
     )
-    run = Run(Problem(mesh, False, (material,), loads, (), 1.0, **changes))
+    touching = Contact(default_friction=FRICTION)
+    problem = Problem(mesh, False, (material,), loads, (), 1.0, contact=touching)
+    run = Run(replace(problem, **changes))
     displacement = STRAIN * mesh.nodes * [material.poisson, -1.0]
     run.set_motion(displacement, 0.0 * displacement)
     run.advance(SETTLING)
     return run
+
+
+def full_pieces(mesh: Mesh, material: Material) -> Run:
+    """The pieces with all that a step of rock in pieces may do: failure map, probe, damping.
+
+    They are of rock so strong that nothing cracks: the map is asked for, and finds nothing.
+    """
+    return pieces(
+        mesh,
+        stronger(material),
+        fracture=Fracture(),
+        probes={"middle": len(mesh.triangles) // 2},
+        damping=DAMPED,
+    )
 
 
 def stepper(run: Run, threads: int = 1) -> Callable[[int], None]:

@@ -30,7 +30,6 @@ from lithofrac.benchmark.race import Subject, race, seconds_a_step
 from lithofrac.benchmark.rows import CONTACT_STEPS
 from lithofrac.config import Material
 from lithofrac.core import Run
-from lithofrac.problem import Contact
 from lithofrac.results.files import write_whole
 
 ELEMENTS = (32, 50, 100, 158, 316)  # squares along a side: 2,048 to 199,712 elements
@@ -95,11 +94,10 @@ def with_cracks(cells: int, sides: tuple[int, ...], repeat: int) -> list[dict]:
     rock = Material.load(blocks.ROCK)
     mesh = blocks.square(cells, seed=1)
     elements = len(mesh.triangles)
-    touching = Contact(default_friction=blocks.FRICTION)
     subjects = {}
     for side in (cells, *sides):  # the first is the block in one piece
         cut = blocks.in_pieces(mesh, side * blocks.SIDE / cells)
-        steps = blocks.stepper(blocks.pieces(cut, rock, contact=touching))
+        steps = blocks.stepper(blocks.pieces(cut, rock))
         subjects[str(side)] = Subject(steps, count=CONTACT_STEPS)
     speeds = race(subjects, elements, repeat)
     edges, more = [], []

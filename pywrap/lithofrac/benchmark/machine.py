@@ -108,21 +108,27 @@ def roofline(name: str, elements: int, speed: float, flops: float, repeat: int) 
     }
 
 
-def memory() -> dict:
+def memory(pairs: str | None = None) -> dict:
     """Bytes an element of a run, resident and at the peak: a large fresh process less a small one.
 
     The peak holds what Python made the mesh with.
+
+    Parameters
+    ----------
+    pairs : of contact an element, a key of `blocks.PIECES`; None: the continuum
     """
-    small, large = (_process(cells) for cells in MEMORY_CELLS)
+    small, large = (_process(cells, pairs) for cells in MEMORY_CELLS)
     more = large["elements"] - small["elements"]
     return {
         "elements": large["elements"],
+        "pairs": large["pairs"],
         "resident_bytes_per_element": (large["resident"] - small["resident"]) / more,
         "peak_bytes_per_element": (large["peak"] - small["peak"]) / more,
     }
 
 
-def _process(cells: int) -> dict:
+def _process(cells: int, pairs: str | None) -> dict:
     command = [sys.executable, "-m", "lithofrac.benchmark.memory", str(cells)]
+    command += [pairs] if pairs else []
     done = subprocess.run(command, capture_output=True, text=True, check=True, env=os.environ)
     return json.loads(done.stdout)

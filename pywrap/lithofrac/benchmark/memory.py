@@ -1,13 +1,23 @@
 """A process that makes a run, takes some steps, and says what memory it has.
 
-python -m lithofrac.benchmark.memory CELLS
+python -m lithofrac.benchmark.memory CELLS [PAIRS]
+
+With PAIRS, a key of `blocks.PIECES`, the square is in pieces, with failure map, probe and damping.
 """
 
 import json
 import sys
 from pathlib import Path
 
-from lithofrac.benchmark.blocks import EVERY, ROCK, pressed, square, stepper
+from lithofrac.benchmark.blocks import (
+    EVERY,
+    ROCK,
+    cut_square,
+    full_pieces,
+    pressed,
+    square,
+    stepper,
+)
 from lithofrac.config import Material
 from lithofrac.core import Run
 
@@ -23,12 +33,17 @@ def used() -> dict[str, int]:
     return {name: 1024 * int(found[key].split()[0]) for name, key in names.items()}
 
 
-def main(cells: int) -> None:
-    """Print elements, resident and peak bytes as JSON."""
-    run = Run(pressed(square(cells), Material.load(ROCK)))
+def main(cells: int, pairs: str | None = None) -> None:
+    """Print elements, resident and peak bytes, and contact pairs as JSON."""
+    rock = Material.load(ROCK)
+    if pairs is None:
+        run = Run(pressed(square(cells), rock))
+    else:
+        run = full_pieces(cut_square(cells, pairs), rock)
     stepper(run)(EVERY)
-    print(json.dumps({"elements": run.sizes().elements} | used()))
+    counts = {"elements": run.sizes().elements, "pairs": run.contact_statistics().pairs_max}
+    print(json.dumps(counts | used()))
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]))
+    main(int(sys.argv[1]), *sys.argv[2:])

@@ -14,19 +14,14 @@ from lithofrac.benchmark import blocks, machine
 from lithofrac.benchmark.race import Speeds, Subject, median_ratio, race
 from lithofrac.config import Material
 from lithofrac.core import Run
-from lithofrac.problem import Contact
 
 CELLS = {5_000: 50, 50_000: 158, 200_000: 316}  # elements -> squares along a side of the block
-# Pairs an element -> squares along a side of the block -> squares along a side of a piece.
-PIECES = {
-    "0.02": {50: 25, 158: 50},
-    "0.1": {50: 9, 158: 11},
-    "0.5": {50: 3, 158: 3},
-}
 YIELDING = {"1": 0.01, "10": 0.1, "100": 1.0}  # percent -> share of the elements
 YIELD_WINDOW = {"1": 0.5, "10": 0.25, "100": 0.1}  # of a window, as returns are slow
 THREADS = (1, 2)
+WITH_ALL = "0.1"  # pairs an element of the row with failure map, probe and damping
 CONTACT_STEPS = 400  # of a window; many more would press the pieces until they yield
+MANY, FEW_WINDOWS = 200_000, 3  # elements from which discrete rows have so few windows
 LOOKS = 5  # steps in which it is seen which elements yield, before and after the windows
 BARE = "bare_elastic_kernel"
 
@@ -69,6 +64,8 @@ def continuum_rows(cells: int, repeat: int) -> list[dict]:
     problems = {
         "elastic_step": blocks.pressed(mesh, elastic),
         "full_step": blocks.pressed(mesh, rock),
+        "elastic_step_damped": blocks.pressed(mesh, elastic, damping=blocks.DAMPED),
+        "full_step_damped": blocks.pressed(mesh, rock, damping=blocks.DAMPED),
         "axisymmetric_step": blocks.pressed(mesh, rock, axisymmetric=True),
     }
     names = {BARE: (BARE, 1)}
@@ -133,30 +130,33 @@ def yielding_rows(cells: int, repeat: int) -> list[dict]:
 def discrete_rows(cells: int, pairs: str, repeat: int) -> list[dict]:
     """Rows of a step with contact; also pairs, what one costs, and the time over that uncut.
 
+    `discrete_step_pairs` has contact alone; at the pairs of `WITH_ALL` there is a step with failure
+    map, probe and damping as well, `discrete_step_full`, in which nothing cracks.
+
     Parameters
     ----------
     cells : squares along a side of the block
-    pairs : key of `PIECES`
+    pairs : key of `blocks.PIECES`
     repeat : windows
     """
     rock = Material.load(blocks.ROCK)
-    mesh = blocks.square(cells, seed=1)
-    cut = blocks.in_pieces(mesh, PIECES[pairs][cells] * blocks.SIDE / cells)
+    whole = blocks.square(cells, seed=1)
+    cut = blocks.cut_square(cells, pairs)
     elements = len(cut.triangles)
-    touching = Contact(default_friction=blocks.FRICTION)
-    uncut = blocks.pieces(mesh, rock, contact=touching)
-    runs = {threads: blocks.pieces(cut, rock, contact=touching) for threads in THREADS}
-    name = f"discrete_step_pairs_{pairs}"
+    made = {f"discrete_step_pairs_{pairs}": blocks.pieces}
+    if pairs == WITH_ALL:
+        made[f"discrete_step_full_{pairs}"] = blocks.full_pieces
+    runs = {(name, threads): make(cut, rock) for name, make in made.items() for threads in THREADS}
     subjects = {
-        BARE: Subject(blocks.bare(mesh, rock), has_setup=True),
-        "uncut": Subject(blocks.stepper(uncut), count=CONTACT_STEPS),
+        BARE: Subject(blocks.bare(whole, rock), has_setup=True),
+        "uncut": Subject(blocks.stepper(blocks.pieces(whole, rock)), count=CONTACT_STEPS),
     }
-    for threads, run in runs.items():
+    for (name, threads), run in runs.items():
         steps = blocks.stepper(run, threads)
         subjects[key_of(name, threads)] = Subject(steps, threads=threads, count=CONTACT_STEPS)
     speeds = race(subjects, elements, repeat)
     rows = []
-    for threads, run in runs.items():
+    for (name, threads), run in runs.items():
         own, uncut = speeds[key_of(name, threads)], speeds["uncut"]
         count = run.contact_statistics().pairs_max
         excess = [1 / a - 1 / b for a, b in zip(own.core, uncut.core, strict=True)]
@@ -166,6 +166,7 @@ def discrete_rows(cells: int, pairs: str, repeat: int) -> list[dict]:
                 "pairs": count,
                 "ns_per_pair": statistics.median(excess) * 1e3 * elements / count,
                 "time_over_uncut": median_ratio(uncut.core, own.core),
+                "cracks": run.sizes().cracks,
             }
         )
     return with_threads(rows, speeds)
@@ -176,6 +177,7 @@ def measure(repeat: int) -> Iterator[dict]:
     for cells in CELLS.values():
         yield from continuum_rows(cells, repeat)
         yield from yielding_rows(cells, repeat)
-    for pairs, sides in PIECES.items():
-        for cells in sides:
-            yield from discrete_rows(cells, pairs, repeat)
+    for pairs in blocks.PIECES:
+        for elements, cells in CELLS.items():
+            windows = min(repeat, FEW_WINDOWS) if elements >= MANY else repeat
+            yield from discrete_rows(cells, pairs, windows)

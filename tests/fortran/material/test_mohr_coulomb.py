@@ -49,6 +49,14 @@ def test_strength_scale_is_positive_even_for_a_rock_of_sand_or_steel():
         assert scales.yield_tolerance == pytest.approx(1e-10 * scales.strength_scale)
 
 
+def test_planes_that_no_stress_reaches_set_no_scale():
+    """At 1e30 Pa they are as if they were not there: the tensile strength alone sets it."""
+    rock = packed("sandstone", cohesion=1e30)
+    assert kernels.rock_scales(rock).strength_scale == rock.constants[3]
+    rock = packed("sandstone", cohesion=1e29)
+    assert kernels.rock_scales(rock).strength_scale == 1e29
+
+
 @pytest.mark.parametrize(
     ("position", "value", "message"),
     [

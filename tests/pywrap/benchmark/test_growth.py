@@ -63,3 +63,17 @@ def test_series_have_the_points_that_were_asked_for():
     assert [row["x"] for row in rows] == [16, 48]  # one and three cuts a way of 8 edges
     rows = growth.of_few((4, 8, 16), repeat=1)
     assert len({row["at_no_element"] for row in rows}) == 1
+
+
+def test_what_is_left_at_no_element_is_the_start_of_the_line(monkeypatch):
+    """Times of 0.5 us and 1 us for each of 1, 2 and 4 chunks."""
+
+    def race_of(subjects, elements, repeat):
+        chunks = dict(zip(subjects, (1, 2, 4), strict=True))
+        speeds = {name: [elements / (0.5 + 1.0 * n)] for name, n in chunks.items()}
+        return {name: race.Speeds(own, own) for name, own in speeds.items()}
+
+    monkeypatch.setattr(growth, "race", race_of)
+    rows = growth.of_few((8, 11, 16), repeat=1)
+    assert rows[0]["seconds"] == pytest.approx(1.5e-6)
+    assert [row["at_no_element"] for row in rows] == pytest.approx([0.5e-6] * 3)
