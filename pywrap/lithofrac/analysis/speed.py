@@ -157,11 +157,9 @@ def _of_bare(name: str, elements: int) -> Callable[[Measured], float | None]:
     return lambda measured: measured.row(name, elements).get("of_bare_kernel")
 
 
-def _time_with_damping(elements: int) -> Callable[[Measured], float | None]:
+def _time_over(name: str, other: str, elements: int) -> Callable[[Measured], float | None]:
     def value(measured: Measured) -> float | None:
-        undamped, damped = (
-            _of_bare(f"full_step{end}", elements)(measured) for end in ("", "_damped")
-        )
+        damped, undamped = (_of_bare(each, elements)(measured) for each in (name, other))
         return None if undamped is None or damped is None else undamped / damped
 
     return value
@@ -240,8 +238,11 @@ TARGETS = (
     ),
     *(
         Target(
-            f"time of full_step_damped over full_step, {elements:,} elements",
-            _time_with_damping(elements),
+            f"time of {name} over {other}, {elements:,} elements", _time_over(name, other, elements)
+        )
+        for name, other in (
+            ("full_step_damped", "full_step"),
+            ("discrete_step_damped_0.1", "discrete_step_full_0.1"),
         )
         for elements in (5_000, 50_000, 200_000)
     ),

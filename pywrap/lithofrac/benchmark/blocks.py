@@ -116,7 +116,7 @@ def elements_that_yield(run: Run, steps: int) -> list[np.ndarray]:
 
 
 def in_pieces(mesh: Mesh, side: float) -> Mesh:
-    """The mesh cut into squares; each has its own nodes on the cuts.
+    """The mesh cut into squares, without its edge sets; each has its own nodes on the cuts.
 
     Parameters
     ----------
@@ -130,7 +130,8 @@ def in_pieces(mesh: Mesh, side: float) -> Mesh:
         mesh.triangles.ravel() * n_pieces + np.repeat(piece, 3), return_inverse=True
     )
     triangles = copy.reshape(-1, 3).astype(np.int32)
-    return replace(mesh, nodes=mesh.nodes[both // n_pieces], triangles=triangles)
+    nodes = mesh.nodes[both // n_pieces]
+    return replace(mesh, nodes=nodes, triangles=triangles, edge_sets={})
 
 
 def cut_square(cells: int, pairs: str) -> Mesh:
@@ -154,18 +155,18 @@ def pieces(mesh: Mesh, material: Material, **changes) -> Run:
     return run
 
 
-def full_pieces(mesh: Mesh, material: Material) -> Run:
-    """The pieces with all that a step of rock in pieces may do: failure map, probe, damping.
+def full_pieces(mesh: Mesh, material: Material, **changes) -> Run:
+    """The pieces with failure map and probe, as rock that may crack has them.
 
     They are of rock so strong that nothing cracks: the map is asked for, and finds nothing.
     """
-    return pieces(
-        mesh,
-        stronger(material),
-        fracture=Fracture(),
-        probes={"middle": len(mesh.triangles) // 2},
-        damping=DAMPED,
-    )
+    probes = {"middle": len(mesh.triangles) // 2}
+    return pieces(mesh, stronger(material), fracture=Fracture(), probes=probes, **changes)
+
+
+def damped_pieces(mesh: Mesh, material: Material) -> Run:
+    """The same with the damping that a case has unless it says otherwise."""
+    return full_pieces(mesh, material, damping=DAMPED)
 
 
 def stepper(run: Run, threads: int = 1) -> Callable[[int], None]:

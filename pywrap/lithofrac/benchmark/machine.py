@@ -20,8 +20,12 @@ import os
 import subprocess
 import sys
 import time
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
+
+from lithofrac.benchmark.blocks import cut_square, square
 
 NODES = 0.5  # an element
 REAL, INTEGER = 8, 4
@@ -111,7 +115,7 @@ def roofline(name: str, elements: int, speed: float, flops: float, repeat: int) 
 def memory(pairs: str | None = None) -> dict:
     """Bytes an element of a run, resident and at the peak: a large fresh process less a small one.
 
-    The peak holds what Python made the mesh with.
+    Of a process that reads its mesh from a file, as `lithofrac run --mesh` does.
 
     Parameters
     ----------
@@ -128,7 +132,10 @@ def memory(pairs: str | None = None) -> dict:
 
 
 def _process(cells: int, pairs: str | None) -> dict:
-    command = [sys.executable, "-m", "lithofrac.benchmark.memory", str(cells)]
-    command += [pairs] if pairs else []
-    done = subprocess.run(command, capture_output=True, text=True, check=True, env=os.environ)
+    with TemporaryDirectory(prefix="lithofrac_") as folder:
+        path = Path(folder) / "mesh.npz"
+        (square(cells) if pairs is None else cut_square(cells, pairs)).save(path)
+        command = [sys.executable, "-m", "lithofrac.benchmark.memory", str(path)]
+        command += [pairs] if pairs else []
+        done = subprocess.run(command, capture_output=True, text=True, check=True, env=os.environ)
     return json.loads(done.stdout)

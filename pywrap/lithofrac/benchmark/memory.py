@@ -1,8 +1,8 @@
 """A process that makes a run, takes some steps, and says what memory it has.
 
-python -m lithofrac.benchmark.memory CELLS [PAIRS]
+python -m lithofrac.benchmark.memory MESH [PAIRS]
 
-With PAIRS, a key of `blocks.PIECES`, the square is in pieces, with failure map, probe and damping.
+With PAIRS, a key of `blocks.PIECES`, the mesh is in pieces, with failure map, probe and damping.
 """
 
 import json
@@ -12,14 +12,13 @@ from pathlib import Path
 from lithofrac.benchmark.blocks import (
     EVERY,
     ROCK,
-    cut_square,
-    full_pieces,
+    damped_pieces,
     pressed,
-    square,
     stepper,
 )
 from lithofrac.config import Material
 from lithofrac.core import Run
+from lithofrac.problem import Mesh
 
 
 def used() -> dict[str, int]:
@@ -33,17 +32,17 @@ def used() -> dict[str, int]:
     return {name: 1024 * int(found[key].split()[0]) for name, key in names.items()}
 
 
-def main(cells: int, pairs: str | None = None) -> None:
+def main(mesh: Path, pairs: str | None = None) -> None:
     """Print elements, resident and peak bytes, and contact pairs as JSON."""
     rock = Material.load(ROCK)
     if pairs is None:
-        run = Run(pressed(square(cells), rock))
+        run = Run(pressed(Mesh.load(mesh), rock))
     else:
-        run = full_pieces(cut_square(cells, pairs), rock)
+        run = damped_pieces(Mesh.load(mesh), rock)
     stepper(run)(EVERY)
     counts = {"elements": run.sizes().elements, "pairs": run.contact_statistics().pairs_max}
     print(json.dumps(counts | used()))
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]), *sys.argv[2:])
+    main(Path(sys.argv[1]), *sys.argv[2:])

@@ -131,7 +131,8 @@ def discrete_rows(cells: int, pairs: str, repeat: int) -> list[dict]:
     """Rows of a step with contact; also pairs, what one costs, and the time over that uncut.
 
     `discrete_step_pairs` has contact alone; at the pairs of `WITH_ALL` there is a step with failure
-    map, probe and damping as well, `discrete_step_full`, in which nothing cracks.
+    map and probe as well, `discrete_step_full`, and one with damping too, `discrete_step_damped`;
+    nothing cracks in them.
 
     Parameters
     ----------
@@ -146,6 +147,7 @@ def discrete_rows(cells: int, pairs: str, repeat: int) -> list[dict]:
     made = {f"discrete_step_pairs_{pairs}": blocks.pieces}
     if pairs == WITH_ALL:
         made[f"discrete_step_full_{pairs}"] = blocks.full_pieces
+        made[f"discrete_step_damped_{pairs}"] = blocks.damped_pieces
     runs = {(name, threads): make(cut, rock) for name, make in made.items() for threads in THREADS}
     subjects = {
         BARE: Subject(blocks.bare(whole, rock), has_setup=True),

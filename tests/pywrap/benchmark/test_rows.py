@@ -67,16 +67,17 @@ def test_a_discrete_row_is_held_against_the_block_in_one_piece(small_pieces, mon
 
 def test_the_full_discrete_step_looks_for_cracks_and_finds_none(small_pieces):
     found = rows.discrete_rows(cells=8, pairs="0.1", repeat=1)
-    names = ("discrete_step_pairs_0.1", "discrete_step_full_0.1")
+    names = ("discrete_step_pairs_0.1", "discrete_step_full_0.1", "discrete_step_damped_0.1")
     assert [(row["name"], row["threads"]) for row in found] == [
         (n, t) for n in names for t in (1, 2)
     ]
-    assert [row["cracks"] for row in found] == [0, 0, 0, 0]
-    full = blocks.full_pieces(blocks.cut_square(8, "0.1"), Material.load("quartzite")).problem
-    assert full.fracture.mode == "inter_element"
-    assert len(full.probes) == 1
-    assert full.damping == blocks.DAMPED
-    assert full.contact.default_friction == blocks.FRICTION
+    assert [row["cracks"] for row in found] == 6 * [0]
+    for make, fraction in ((blocks.full_pieces, 0.0), (blocks.damped_pieces, 0.3)):
+        made = make(blocks.cut_square(8, "0.1"), Material.load("quartzite")).problem
+        assert made.fracture.mode == "inter_element"
+        assert len(made.probes) == 1
+        assert made.damping.fraction == fraction
+        assert made.contact.default_friction == blocks.FRICTION
 
 
 def test_damping_is_that_of_a_case_without_keys():
