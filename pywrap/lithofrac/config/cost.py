@@ -29,6 +29,7 @@ from lithofrac.config.scene import (
 # specimen in plane strain, all of which yields beyond its peak (7.4e6 to 14e6); the same in
 # axisymmetry (6.3e6 to 9.4e6). Without confinement it fails in tension, point by point.
 ELASTIC_RATE, PARTLY_RATE, PLANE_RATE, AXIAL_RATE = 60e6, 12.5e6, 10.5e6, 8e6
+TOUCHING_RATE = 45e6  # nothing yields, but bodies touch
 UNCONFINED = {PLANE_RATE: 7e6, AXIAL_RATE: 3e6}
 EXPLICIT_SLOWER = 8  # times: every choice of tension planes is tried
 # Beside that: of each step, of each record with its ledger and guards, of each element in a frame,
@@ -130,7 +131,7 @@ def rate_of(
 ) -> float:
     """Element-steps per second of one core; `options` are `Material.options` of all bodies."""
     if not any(yields for *_, yields in options):
-        return ELASTIC_RATE
+        return TOUCHING_RATE if contact else ELASTIC_RATE
     slower = EXPLICIT_SLOWER if any(explicit for _, explicit, *_ in options) else 1
     if contact:
         return PARTLY_RATE / slower
