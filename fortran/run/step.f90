@@ -207,6 +207,7 @@ contains
       if (mod(model%step, look_interval) /= 0) return
       energy = 0.0_wp
       associate (mass => model%fields%mass, v => model%fields%v)
+         !$omp simd reduction(+:energy)
          do node = 1, model%mesh%n_nodes
             energy = energy + 0.5_wp*mass(node)*(v(1, node)*v(1, node) + v(2, node)*v(2, node))
          end do
