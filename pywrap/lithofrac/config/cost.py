@@ -30,7 +30,7 @@ from lithofrac.config.scene import (
 # axisymmetry (6.3e6 to 9.4e6). Without confinement it fails in tension, point by point.
 ELASTIC_RATE, PARTLY_RATE, PLANE_RATE, AXIAL_RATE = 60e6, 12.5e6, 10.5e6, 8e6
 TOUCHING_RATE = 45e6  # nothing yields, but bodies touch
-UNCONFINED = {PLANE_RATE: 7e6, AXIAL_RATE: 3e6}
+PLANE_UNCONFINED_RATE, AXIAL_UNCONFINED_RATE = 7e6, 3e6
 EXPLICIT_SLOWER = 8  # times: every choice of tension planes is tried
 # Beside that: of each step, of each record with its ledger and guards, of each element in a frame,
 # and of each run with its tables. Single elements and the wave in a bar take nothing else.
@@ -135,8 +135,9 @@ def rate_of(
     slower = EXPLICIT_SLOWER if any(explicit for _, explicit, *_ in options) else 1
     if contact:
         return PARTLY_RATE / slower
-    rate = AXIAL_RATE if axisymmetric else PLANE_RATE
-    return (rate if confined else UNCONFINED[rate]) / slower
+    if axisymmetric:
+        return (AXIAL_RATE if confined else AXIAL_UNCONFINED_RATE) / slower
+    return (PLANE_RATE if confined else PLANE_UNCONFINED_RATE) / slower
 
 
 def run_seconds(elements: float, steps: float, records: int, frames: int, rate: float) -> float:
