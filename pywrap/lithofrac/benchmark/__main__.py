@@ -39,7 +39,7 @@ def main(argv: list[str] | None = None) -> None:
         prog="python -m lithofrac.benchmark", description="Measure the speed of the core."
     )
     parser.add_argument("--out", type=Path, default=Path("out/benchmark.json"))
-    parser.add_argument("--repeat", type=int, default=5, help="windows of every row")
+    parser.add_argument("--repeat", type=int, default=9, help="windows of every row")
     options = parser.parse_args(argv)
     print("million element-steps per core-second, median (lowest-highest) of paired windows")
     rows = []
