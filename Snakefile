@@ -3,7 +3,9 @@
 from functools import cache
 from pathlib import Path
 
-from lithofrac.config import load_suite, predicted
+from lithofrac.config import ConfigError, load_suite, predicted
+from lithofrac.errors import CoreError
+from lithofrac.meshed_cost import meshed_cost
 from lithofrac.report import category_of, load_sheets
 
 SUITE = config.get("suite", "configs/suite.yaml")
@@ -56,7 +58,7 @@ SHARED = [
 POINT = [*SHARED, *modules("", "kernels", "point")]
 DECIDING = [
     *SHARED,
-    *modules("", "core", "guards", "run"),
+    *modules("", "core", "guards", "plan", "run"),
     *modules("analysis", "crack_faces", "frames", "run_numbers", "strength"),
     *modules("results"),
     *modules("scenes"),
@@ -185,10 +187,16 @@ def geometry(wildcards):
     return str(scene.path) if scene.kind == "gmsh_file" else []
 
 
+MESHES = {}  # of geometries from files, made once
+
+
 @cache
 def cost(case):
     """What a run is expected to take; asked for job by job, as some need a moment."""
-    return predicted(READ[case])
+    try:
+        return meshed_cost(READ[case], MESHES)
+    except (ConfigError, CoreError):  # which the run itself will say
+        return predicted(READ[case])
 
 
 # It writes to the tree, not below `out`: never on a node of a cluster.

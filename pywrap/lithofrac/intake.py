@@ -68,7 +68,7 @@ def accepted(name: str, case: Case, mesh: Mesh) -> tuple[Problem, dict]:
     """Problem of a case and its plan, once scene and core have taken both; nothing is written."""
     from lithofrac.config import ConfigError
     from lithofrac.errors import CoreError
-    from lithofrac.run import plan
+    from lithofrac.plan import plan
     from lithofrac.scenes import make_problem
 
     try:

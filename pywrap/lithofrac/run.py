@@ -23,10 +23,10 @@ from lithofrac._build import NATIVE
 from lithofrac.analysis.crack_faces import find_faces
 from lithofrac.analysis.frames import MM, Frame
 from lithofrac.analysis.run_numbers import finite, peak, ratio, residual
-from lithofrac.config.cost import rate_of, run_seconds
 from lithofrac.core import Run
 from lithofrac.errors import CoreError, GuardError
 from lithofrac.guards import Watch
+from lithofrac.plan import expected_seconds
 from lithofrac.problem import Problem
 from lithofrac.results import checkpoint
 from lithofrac.results.cracks import crack_table, fragment_table
@@ -36,56 +36,6 @@ from lithofrac.results.lock import only_run
 from lithofrac.results.recorder import Recorder
 
 FAILED_FRAME = "fields/failed.vtu"
-
-
-def plan(problem: Problem) -> dict:
-    """What a run will use and what it leaves out.
-
-    Returns
-    -------
-    dict
-        elements, nodes, bodies, time_step_s, steps, expected_seconds (one core), and
-        `uses`: feature -> bool.
-
-    Raises
-    ------
-    CoreError
-        Where the core refuses the problem, or parts overlap at the start.
-    """
-    run = Run(problem)
-    if problem.contact is None:  # which looks for itself
-        run.refuse_overlap()
-    elements = len(problem.mesh.triangles)
-    steps = math.ceil(problem.end_time / run.dt)
-    return {
-        "elements": elements,
-        "nodes": len(problem.mesh.nodes),
-        "bodies": len(problem.mesh.body_names),
-        "time_step_s": run.dt,
-        "steps": steps,
-        "expected_seconds": expected_seconds(problem, steps),
-        "uses": {
-            "axisymmetry": problem.axisymmetric,
-            "yield check": any(m.options[3] for m in problem.materials),
-            "Mohr-Coulomb planes": any(m.options[3] and m.options[2] for m in problem.materials),
-            "regularised softening": any(m.reference_width > 0.0 for m in problem.materials),
-            "damping": problem.damping.fraction > 0.0 or bool(problem.damping.alpha),
-            "pressure": bool(problem.pressure_loads),
-            "contact": problem.contact is not None,
-            "crack insertion": problem.fracture is not None,
-            "probes": bool(problem.probes),
-            "field output": problem.fields > 0,
-        },
-    }
-
-
-def expected_seconds(problem: Problem, steps: int) -> float:
-    """Time that so many steps are expected to take on one core [s]."""
-    confined = any(load.pressure > 0.0 for load in problem.pressure_loads)
-    options = [material.options for material in problem.materials]
-    rate = rate_of(options, problem.contact is not None, problem.axisymmetric, confined)
-    elements = len(problem.mesh.triangles)
-    return run_seconds(elements, steps, problem.records, problem.fields, rate)
 
 
 def simulate(

@@ -17,12 +17,13 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 
 from lithofrac.analysis.reading import read_summary
 from lithofrac.analysis.study import check_quantities
 from lithofrac.config.case import Case
-from lithofrac.config.cost import CUT_STEP, refuse_above_budget
+from lithofrac.config.cost import refuse_above_budget
 from lithofrac.config.errors import ConfigError
 from lithofrac.config.gmsh_file import GmshFile
 from lithofrac.config.material import PACKAGED
@@ -38,7 +39,7 @@ GRACE, CANCEL = 5.0, 60.0  # [s] for what is stopped to end by itself, here and 
 
 DECIDING = (
     "_core*.so",
-    *(f"{name}.py" for name in ("core", "guards", "problem", "run")),
+    *(f"{name}.py" for name in ("core", "guards", "plan", "problem", "run")),
     *(f"analysis/{name}.py" for name in ("crack_faces", "frames", "run_numbers", "strength")),
     *(f"{folder}/*.py" for folder in ("config", "results", "scenes")),
 )  # as in the Snakefile of a suite
@@ -132,8 +133,7 @@ def own_costs(study: Study) -> dict[str, dict]:
     ConfigError
         Where a mesh or its problem is refused, as the run would be.
     """
-    from lithofrac.run import plan
-    from lithofrac.scenes import make_mesh, make_problem
+    from lithofrac.meshed_cost import meshed_cost
 
     meshes: dict = {}
     found = {}
@@ -141,19 +141,10 @@ def own_costs(study: Study) -> dict[str, dict]:
         case = study.case(name)
         if not isinstance(case.scene, GmshFile):
             continue
-        key = case.scene.path.resolve(), case.scene.length_unit, case.mesh.seed
         try:
-            if key not in meshes:
-                meshes[key] = make_mesh(case)
-            expected = plan(make_problem(case, meshes[key]))
+            found[name] = asdict(meshed_cost(case, meshes))
         except (ConfigError, CoreError) as error:
             raise ConfigError(f"{error} (run {name})") from None
-        shrinks = CUT_STEP if case.fracture.mode == "intra_element" else 1.0
-        found[name] = {
-            "elements": expected["elements"],
-            "steps": expected["steps"] / shrinks,
-            "seconds": expected["expected_seconds"] / shrinks,
-        }
     return found
 
 

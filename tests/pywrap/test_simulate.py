@@ -14,8 +14,9 @@ from models import Elastic, hold, problem, rectangle
 from lithofrac.config import Material
 from lithofrac.core import Run
 from lithofrac.errors import CoreError
+from lithofrac.plan import plan
 from lithofrac.problem import Damping, Measures, PressureLoad, Ramp
-from lithofrac.run import plan, simulate
+from lithofrac.run import simulate
 
 
 def specimen(**changes):

@@ -33,11 +33,12 @@ import pandas as pd
 from lithofrac.config import Case, Material, load_suite, predicted
 from lithofrac.core import ElementState, Run
 from lithofrac.guards import Watch
+from lithofrac.plan import plan
 from lithofrac.problem import NEVER, Contact, Fracture, Problem
 from lithofrac.results.fields import write_frame
 from lithofrac.results.files import write_whole
 from lithofrac.results.recorder import Recorder
-from lithofrac.run import plan, simulate
+from lithofrac.run import simulate
 from lithofrac.scenes import make_mesh, make_problem
 
 WINDOWS = 20

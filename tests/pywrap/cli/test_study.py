@@ -293,11 +293,11 @@ plot: {{x: contact.default_friction, y: [peak_stress_MPa]}}
 
 def test_an_own_geometry_asks_a_cluster_for_what_its_mesh_takes(tmp_path, monkeypatch):
     """By elements and steps of the mesh, made once for both runs, instead of a fixed guess."""
-    import lithofrac.scenes
+    import lithofrac.meshed_cost
 
-    meshed, make_mesh = [], lithofrac.scenes.make_mesh
+    meshed, make_mesh = [], lithofrac.meshed_cost.make_mesh
     monkeypatch.setattr(
-        lithofrac.scenes, "make_mesh", lambda case: meshed.append(case) or make_mesh(case)
+        lithofrac.meshed_cost, "make_mesh", lambda case: meshed.append(case) or make_mesh(case)
     )
     file, out = tmp_path / "study.yaml", tmp_path / "out"
     file.write_text(HOLES)

@@ -11,7 +11,7 @@ from lithofrac.config.cost import (
     Cost,
     run_seconds,
 )
-from lithofrac.run import plan
+from lithofrac.plan import plan
 from lithofrac.scenes.make import make_mesh, make_problem
 
 QUICK = "configs/suite_quick.yaml"

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from lithofrac.config import load_case, predicted
+from lithofrac.meshed_cost import meshed_cost
 from lithofrac.report import category_of, load_sheets
 from lithofrac.report.captions import caption
 
@@ -368,3 +370,18 @@ def test_accuracy_is_made_when_it_is_asked_for_and_only_then(tree):
     jobs = planned(tree, "accuracy")
     assert (jobs["make_accuracy"], jobs["plot_accuracy"], jobs["accuracy"]) == (1, 1, 1)
     assert not {"simulate", "page"} & set(jobs)
+
+
+def test_own_geometry_asks_for_what_its_mesh_takes(tree):
+    """And for the fixed guess where gmsh cannot read it, as the run itself says why."""
+    case = load_case(ROOT / "configs" / "examples" / "two_holes.yaml")
+    assert meshed_cost(case, {}).group == "short" != predicted(case).group
+    own = tree / "configs" / "own.yaml"
+    own.write_text("title: One\ncases:\n  holes: {extends: examples/two_holes.yaml}\n")
+    done = snakemake(tree, "--dry-run", suite="own")
+    assert "Group job short" in done.stdout, done.stdout + done.stderr
+    (tree / "configs" / "examples" / "two_holes.geo").write_text("Point(1) = {0, 0\n")
+    done = snakemake(tree, "--dry-run", suite="own")
+    assert done.returncode == 0, done.stderr
+    assert "Mesh and run holes" in done.stdout
+    assert "Group job short" not in done.stdout
