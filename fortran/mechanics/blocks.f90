@@ -142,20 +142,29 @@ contains
       integer, intent(in) :: run
       real(wp), intent(inout), contiguous :: force(:, :)  !! (2, n_nodes) [N]
 
-      integer :: i, place, node, first, last
-
-      first = blocks%first_node(run)
-      last = blocks%first_node(run + 1) - 1
-      force(:, first:last) = blocks%buffer(:, first:last)
-      blocks%buffer(:, first:last) = 0.0_wp
-      do i = blocks%first_shared(run), blocks%first_shared(run + 1) - 1
-         node = blocks%shared(1, i)
-         place = blocks%shared(2, i)
-         force(1, node) = force(1, node) + blocks%buffer(1, place)
-         force(2, node) = force(2, node) + blocks%buffer(2, place)
-         blocks%buffer(1, place) = 0.0_wp
-         blocks%buffer(2, place) = 0.0_wp
-      end do
+      call sum_places(blocks%first_node(run), blocks%first_node(run + 1) - 1, &
+         blocks%shared(:, blocks%first_shared(run):blocks%first_shared(run + 1) - 1), &
+         size(blocks%buffer, 2), blocks%buffer, size(force, 2), force)
    end subroutine assemble
+
+   !> The same with arrays of known shape, whose columns are copied without a call for each.
+   pure subroutine sum_places(first, last, shared, n_places, buffer, n_nodes, force)
+      integer, intent(in) :: first, last                !! nodes of the run
+      integer, intent(in), contiguous :: shared(:, :)   !! (2, n) node and its further place
+      integer, intent(in) :: n_places, n_nodes
+      real(wp), intent(inout) :: buffer(2, n_places)    !! [N]
+      real(wp), intent(inout) :: force(2, n_nodes)      !! [N]
+
+      integer :: i, place, node
+
+      force(:, first:last) = buffer(:, first:last)
+      buffer(:, first:last) = 0.0_wp
+      do i = 1, size(shared, 2)
+         node = shared(1, i)
+         place = shared(2, i)
+         force(:, node) = force(:, node) + buffer(:, place)
+         buffer(:, place) = 0.0_wp
+      end do
+   end subroutine sum_places
 
 end module lithofrac_mechanics_blocks

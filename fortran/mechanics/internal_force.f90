@@ -30,7 +30,8 @@ module lithofrac_mechanics_internal_force
 contains
 
    !> Update the material of a chunk and add its nodal forces to the buffer of its block.
-   subroutine chunk_force(chunks, chunk, rock, fields, dt, state, place, buffer, failure)
+   subroutine chunk_force(chunks, chunk, rock, fields, dt, state, place, n_places, buffer, &
+      failure)
       type(chunks_type), intent(in) :: chunks
       integer, intent(in) :: chunk
       type(rock_type), intent(in) :: rock
@@ -38,7 +39,8 @@ contains
       real(wp), intent(in) :: dt                           !! step that led here [s]
       type(inelastic_type), intent(inout) :: state
       integer, intent(in) :: place(width, 3)               !! of the corners in `buffer`
-      real(wp), intent(inout), contiguous :: buffer(:, :)  !! (2, places) [N]
+      integer, intent(in) :: n_places
+      real(wp), intent(inout) :: buffer(2, n_places)       !! [N]
       type(failure_type), intent(inout) :: failure
 
       real(wp) :: strain(width, 4), rotation(width, 3), stress(width, 4), force(width, 4)
@@ -59,9 +61,9 @@ contains
             call return_flagged(chunks, chunk, rock, fields, dt, state, stress, failure)
             call nodal_forces(width, gradient, volume, strain, rotation, stress, force)
          end if
-         call scatter(place, force, buffer)
+         call scatter(place, force, n_places, buffer)
          if (chunks%axisymmetric) call scatter_hoop(place, chunks%hoop(:, chunk), volume, &
-            stress(:, 3), buffer)
+            stress(:, 3), n_places, buffer)
       end associate
    end subroutine chunk_force
 
@@ -120,9 +122,10 @@ contains
       real(wp), intent(out) :: du(width, 4)              !! [m]
       real(wp), intent(out) :: strain_zz(width)
 
-      call gather(chunks%node(:, :, chunk), fields%u, du)
+      call gather(chunks%node(:, :, chunk), size(fields%u, 2), fields%u, du)
       if (chunks%axisymmetric) then
-         call hoop_strain(chunks%node(:, :, chunk), fields%u, chunks%hoop(:, chunk), strain_zz)
+         call hoop_strain(chunks%node(:, :, chunk), size(fields%u, 2), fields%u, &
+            chunks%hoop(:, chunk), strain_zz)
       else
          strain_zz = 0.0_wp
       end if

@@ -7,6 +7,9 @@
 !>
 !> so that P : dF = T : dU exactly: no energy drifts in closed cycles of strain and rotation.
 !> Components: xx, yy, zz, xy; shear strain is engineering (Klerck 2004, section 2.1).
+!>
+!> Fields of nodes come with their shape: (:, :) would have a stride that the compiler must
+!> multiply by, node for node, which takes a tenth of a step.
 module lithofrac_mechanics_kinematics
    use lithofrac_base_kinds, only: wp
    use lithofrac_material_rock, only: rock_type
@@ -20,9 +23,10 @@ module lithofrac_mechanics_kinematics
 contains
 
    !> Displacements of corners 2 and 3 relative to corner 1.
-   pure subroutine gather(node, u, du)
+   pure subroutine gather(node, n_nodes, u, du)
       integer, intent(in) :: node(width, 3)
-      real(wp), intent(in), contiguous :: u(:, :)   !! (2, n_nodes) displacement [m]
+      integer, intent(in) :: n_nodes
+      real(wp), intent(in) :: u(2, n_nodes)         !! displacement [m]
       real(wp), intent(out) :: du(width, 4)         !! x2, y2, x3, y3 relative to corner 1 [m]
 
       integer :: i
@@ -87,9 +91,10 @@ contains
    end subroutine area_ratios
 
    !> Hoop strain of axisymmetry, from the mean radius of the element (no lock-up at the axis).
-   pure subroutine hoop_strain(node, u, hoop, strain_zz)
+   pure subroutine hoop_strain(node, n_nodes, u, hoop, strain_zz)
       integer, intent(in) :: node(width, 3)
-      real(wp), intent(in), contiguous :: u(:, :)   !! (2, n_nodes) [m]
+      integer, intent(in) :: n_nodes
+      real(wp), intent(in) :: u(2, n_nodes)         !! [m]
       real(wp), intent(in) :: hoop(width)           !! 1/(3 mean radius) [1/m]
       real(wp), intent(out) :: strain_zz(width)
 
@@ -287,10 +292,11 @@ contains
    end subroutine corner_forces
 
    !> Add the forces of a chunk to the buffer of its block, in the order of its elements.
-   pure subroutine scatter(place, force, buffer)
-      integer, intent(in) :: place(width, 3)            !! of the corners in `buffer`
-      real(wp), intent(in) :: force(width, 4)           !! x2, y2, x3, y3 [N]
-      real(wp), intent(inout), contiguous :: buffer(:, :) !! (2, places) [N]
+   pure subroutine scatter(place, force, n_places, buffer)
+      integer, intent(in) :: place(width, 3)             !! of the corners in `buffer`
+      real(wp), intent(in) :: force(width, 4)            !! x2, y2, x3, y3 [N]
+      integer, intent(in) :: n_places
+      real(wp), intent(inout) :: buffer(2, n_places)     !! [N]
 
       integer :: i, a, b, c
 
@@ -308,12 +314,13 @@ contains
    end subroutine scatter
 
    !> Radial force of the hoop stress, shared by the three corners.
-   pure subroutine scatter_hoop(place, hoop, volume, stress_zz, buffer)
+   pure subroutine scatter_hoop(place, hoop, volume, stress_zz, n_places, buffer)
       integer, intent(in) :: place(width, 3)
       real(wp), intent(in) :: hoop(width)               !! 1/(3 mean radius) [1/m]
       real(wp), intent(in) :: volume(width)             !! [m3/rad]
       real(wp), intent(in) :: stress_zz(width)          !! hoop stress [Pa]
-      real(wp), intent(inout), contiguous :: buffer(:, :)
+      integer, intent(in) :: n_places
+      real(wp), intent(inout) :: buffer(2, n_places)
 
       integer :: i
       real(wp) :: share

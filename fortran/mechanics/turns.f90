@@ -37,12 +37,12 @@ contains
 
       associate (node => chunks%node(:, :, chunk), hoop => chunks%hoop(:, chunk), &
             strain => stretch%strain)
-         call gather(node, fields%u, du)
-         call gather(node, fields%v, dv)
+         call gather(node, size(fields%u, 2), fields%u, du)
+         call gather(node, size(fields%v, 2), fields%v, dv)
          strain(:, 3) = 0.0_wp
          if (chunks%axisymmetric) then
-            call hoop_strain(node, fields%u, hoop, strain(:, 3))
-            call hoop_strain(node, fields%v, hoop, rate)
+            call hoop_strain(node, size(fields%u, 2), fields%u, hoop, strain(:, 3))
+            call hoop_strain(node, size(fields%v, 2), fields%v, hoop, rate)
             strain(:, 3) = strain(:, 3) - back*rate
          end if
          du = du - back*dv

@@ -162,7 +162,8 @@ contains
                if (is_fast) call look(chunks, chunk, rock, model%fields, model%state, model%dt, &
                   before)
                call chunk_force(chunks, chunk, rock, model%fields, merge(model%dt, 0.0_wp, &
-                  model%started), model%state, blocks%place(:, :, chunk), blocks%buffer, failure)
+                  model%started), model%state, blocks%place(:, :, chunk), size(blocks%buffer, 2), &
+                  blocks%buffer, failure)
                if (.not. is_fast) cycle
                call look(chunks, chunk, rock, model%fields, model%state, 0.0_wp, after)
                blocks%chord(block) = blocks%chord(block) + chord_work(chunks%volume(:, chunk), &

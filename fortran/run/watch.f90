@@ -145,7 +145,7 @@ contains
       area = huge(1.0_wp)
       element = 0
       do chunk = 1, model%chunks%n_chunks
-         call gather(model%chunks%node(:, :, chunk), model%fields%u, du)
+         call gather(model%chunks%node(:, :, chunk), size(model%fields%u, 2), model%fields%u, du)
          call area_ratios(model%chunks%gradient(:, :, chunk), du, ratio)
          if (minval(ratio) >= area) cycle
          do lane = 1, model%chunks%filled(chunk)

@@ -54,7 +54,8 @@ contains
             model%fields%v = path(:, :, step) - model%fields%u
             model%fields%u = path(:, :, step)
             call chunk_force(model%chunks, 1, model%rocks(1), model%fields, 1.0_c_double, &
-               model%state, model%blocks%place(:, :, 1), forces(:, :, step), failure)
+               model%state, model%blocks%place(:, :, 1), size(forces, 2), &
+               forces(:, :, step), failure)
             call element_state(model, [1], states(:n_element_state, step:step))
          end do
          dissipated = model%state%dissipated(1, :, 1)
