@@ -9,7 +9,7 @@ module lithofrac_run_node_update
    implicit none
    private
 
-   public :: n_sums, sum_moments, update_affine, update_ground, update_plain
+   public :: move, n_sums, sum_moments, update_affine, update_ground, update_plain
 
    integer, parameter :: n_sums = 3  !! kinetic energy [J], damping power before and after [W]
 
@@ -24,29 +24,43 @@ contains
       logical, intent(in) :: drift        !! move the nodes as well
       real(wp), intent(out) :: sums(n_sums)
 
-      real(wp) :: before, after, kinetic
-      integer :: node, k
-
       sums = 0.0_wp
-      associate (v => fields%v, f => fields%internal, p => fields%external)
+      associate (n => last - first + 1, v => fields%v, f => fields%internal, p => fields%external)
          if (drift) then
-            call kick_and_drift(2*(last - first + 1), dt, fields%inverse_mass(1, first), &
-               p(1, first), f(1, first), v(1, first), fields%u(1, first))
-            return
+            call kick_and_drift(2*n, dt, fields%inverse_mass(1, first), p(1, first), f(1, first), &
+               v(1, first), fields%u(1, first))
+         else
+            call kick(n, dt, fields%mass(first), fields%inverse_mass(1, first), p(1, first), &
+               f(1, first), v(1, first), sums(1))
          end if
-         kinetic = 0.0_wp
-         !$omp simd private(before, after, k) reduction(+:kinetic)
-         do node = first, last
-            do k = 1, 2
-               before = v(k, node)
-               after = before + fields%inverse_mass(k, node)*(dt*(p(k, node) - f(k, node)))
-               v(k, node) = after
-               kinetic = kinetic + 0.5_wp*fields%mass(node)*(before*after)
-            end do
-         end do
       end associate
-      sums(1) = kinetic
    end subroutine update_plain
+
+   !> Velocities of consecutive nodes, and their kinetic energy.
+   pure subroutine kick(n, dt, mass, inverse_mass, external, internal, v, kinetic)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: dt                  !! [s]
+      real(wp), intent(in) :: mass(n)             !! [kg]
+      real(wp), intent(in) :: inverse_mass(2, n)  !! [1/kg]
+      real(wp), intent(in) :: external(2, n)      !! [N]
+      real(wp), intent(in) :: internal(2, n)      !! [N]
+      real(wp), intent(inout) :: v(2, n)          !! [m/s]
+      real(wp), intent(out) :: kinetic            !! [J]
+
+      real(wp) :: before, after
+      integer :: i, k
+
+      kinetic = 0.0_wp
+      !$omp simd private(before, after, k) reduction(+:kinetic)
+      do i = 1, n
+         do k = 1, 2
+            before = v(k, i)
+            after = before + inverse_mass(k, i)*(dt*(external(k, i) - internal(k, i)))
+            v(k, i) = after
+            kinetic = kinetic + 0.5_wp*mass(i)*(before*after)
+         end do
+      end do
+   end subroutine kick
 
    !> Velocities, then displacements, of both components of consecutive nodes.
    pure subroutine kick_and_drift(n, dt, inverse_mass, external, internal, v, u)
@@ -77,30 +91,49 @@ contains
       real(wp), intent(in) :: alpha       !! [1/s]
       real(wp), intent(out) :: sums(n_sums)
 
+      associate (n => last - first + 1)
+         call kick_ground(n, dt, alpha, fields%mass(first), fields%inverse_mass(1, first), &
+            fields%free_mass(1, first), fields%external(1, first), fields%internal(1, first), &
+            fields%v(1, first), sums)
+         if (drift) call move(n, dt, fields%v(1, first), fields%u(1, first))
+      end associate
+   end subroutine update_ground
+
+   !> Velocities of consecutive nodes, with what they book.
+   pure subroutine kick_ground(n, dt, alpha, mass, inverse_mass, free_mass, external, internal, &
+      v, sums)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: dt                  !! [s]
+      real(wp), intent(in) :: alpha               !! [1/s]
+      real(wp), intent(in) :: mass(n)             !! [kg]
+      real(wp), intent(in) :: inverse_mass(2, n)  !! [1/kg]
+      real(wp), intent(in) :: free_mass(2, n)     !! [kg]
+      real(wp), intent(in) :: external(2, n)      !! [N]
+      real(wp), intent(in) :: internal(2, n)      !! [N]
+      real(wp), intent(inout) :: v(2, n)          !! [m/s]
+      real(wp), intent(out) :: sums(n_sums)
+
       real(wp) :: before, after, drag, kinetic, power_before, power_after
-      integer :: node, k
+      integer :: i, k
 
       kinetic = 0.0_wp
       power_before = 0.0_wp
       power_after = 0.0_wp
-      associate (u => fields%u, v => fields%v, f => fields%internal, p => fields%external)
-         !$omp simd private(before, after, drag, k) reduction(+:kinetic, power_before, power_after)
-         do node = first, last
-            do k = 1, 2
-               before = v(k, node)
-               after = before + fields%inverse_mass(k, node)*(dt*(p(k, node) - f(k, node)) &
-                  - alpha*dt*fields%free_mass(k, node)*before)/(1.0_wp + 0.5_wp*alpha*dt)
-               drag = -0.5_wp*alpha*fields%free_mass(k, node)*(before + after)
-               v(k, node) = after
-               kinetic = kinetic + 0.5_wp*fields%mass(node)*(before*after)
-               power_before = power_before + drag*before
-               power_after = power_after + drag*after
-            end do
+      !$omp simd private(before, after, drag, k) reduction(+:kinetic, power_before, power_after)
+      do i = 1, n
+         do k = 1, 2
+            before = v(k, i)
+            after = before + inverse_mass(k, i)*(dt*(external(k, i) - internal(k, i)) &
+               - alpha*dt*free_mass(k, i)*before)/(1.0_wp + 0.5_wp*alpha*dt)
+            drag = -0.5_wp*alpha*free_mass(k, i)*(before + after)
+            v(k, i) = after
+            kinetic = kinetic + 0.5_wp*mass(i)*(before*after)
+            power_before = power_before + drag*before
+            power_after = power_after + drag*after
          end do
-         if (drift) u(:, first:last) = u(:, first:last) + dt*v(:, first:last)
-      end associate
+      end do
       sums = [kinetic, power_before, power_after]
-   end subroutine update_ground
+   end subroutine kick_ground
 
    !> Relative to the affine motion `fit`; also sums the moments for the next fit.
    !>
@@ -108,9 +141,9 @@ contains
    !> vanish exactly; this lowers the stable step by alpha dt/4, far inside the safety factor.
    pure subroutine update_affine(fields, nodes, first, last, dt, drift, alpha, fit, sums, moments)
       type(fields_type), intent(inout) :: fields
-      real(wp), intent(in) :: nodes(:, :)  !! (2, n_nodes) reference positions [m]
       integer, intent(in) :: first
       integer, intent(in) :: last
+      real(wp), intent(in) :: nodes(2, last)  !! reference positions [m]
       real(wp), intent(in) :: dt
       logical, intent(in) :: drift
       real(wp), intent(in) :: alpha        !! [1/s]
@@ -118,62 +151,103 @@ contains
       real(wp), intent(out) :: sums(n_sums)
       real(wp), intent(out) :: moments(n_moments)  !! see `fit_affine`
 
+      call kick_affine(last - first + 1, dt, alpha, fit, nodes(1, first), fields%u(1, first), &
+         fields%mass(first), fields%inverse_mass(1, first), fields%drag_mass(1, first), &
+         fields%external(1, first), fields%internal(1, first), fields%v(1, first), sums)
+      moments = sum_moments(fields, nodes, first, last, dt)
+      if (drift) call move(last - first + 1, dt, fields%v(1, first), fields%u(1, first))
+   end subroutine update_affine
+
+   !> Velocities of consecutive nodes, with what they book.
+   pure subroutine kick_affine(n, dt, alpha, fit, nodes, u, mass, inverse_mass, drag_mass, &
+      external, internal, v, sums)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: dt                  !! [s]
+      real(wp), intent(in) :: alpha               !! [1/s]
+      type(affine_type), intent(in) :: fit
+      real(wp), intent(in) :: nodes(2, n)         !! reference positions [m]
+      real(wp), intent(in) :: u(2, n)             !! [m]
+      real(wp), intent(in) :: mass(n)             !! [kg]
+      real(wp), intent(in) :: inverse_mass(2, n)  !! [1/kg]
+      real(wp), intent(in) :: drag_mass(2, n)     !! [kg]
+      real(wp), intent(in) :: external(2, n)      !! [N]
+      real(wp), intent(in) :: internal(2, n)      !! [N]
+      real(wp), intent(inout) :: v(2, n)          !! [m/s]
+      real(wp), intent(out) :: sums(n_sums)
+
       real(wp) :: arm(2), before(2), after(2), drag(2), kinetic, power_before, power_after
-      integer :: node
+      integer :: i
 
       kinetic = 0.0_wp
       power_before = 0.0_wp
       power_after = 0.0_wp
-      associate (u => fields%u, v => fields%v, f => fields%internal, p => fields%external, &
-            inverse_mass => fields%inverse_mass, drag_mass => fields%drag_mass)
-         !$omp simd private(arm, before, after, drag) &
-         !$omp& reduction(+:kinetic, power_before, power_after)
-         do node = first, last
-            arm(1) = nodes(1, node) + u(1, node) - fit%centre(1)
-            arm(2) = nodes(2, node) + u(2, node) - fit%centre(2)
-            before(1) = v(1, node)
-            before(2) = v(2, node)
-            drag(1) = -alpha*drag_mass(1, node)*(before(1) - fit%velocity(1) &
-               - fit%gradient(1, 1)*arm(1) - fit%gradient(1, 2)*arm(2))
-            drag(2) = -alpha*drag_mass(2, node)*(before(2) - fit%velocity(2) &
-               - fit%gradient(2, 1)*arm(1) - fit%gradient(2, 2)*arm(2))
-            after(1) = before(1) + inverse_mass(1, node)*(dt*(p(1, node) - f(1, node) + drag(1)))
-            after(2) = before(2) + inverse_mass(2, node)*(dt*(p(2, node) - f(2, node) + drag(2)))
-            v(1, node) = after(1)
-            v(2, node) = after(2)
-            kinetic = kinetic &
-               + 0.5_wp*fields%mass(node)*(before(1)*after(1) + before(2)*after(2))
-            power_before = power_before + (drag(1)*before(1) + drag(2)*before(2))
-            power_after = power_after + (drag(1)*after(1) + drag(2)*after(2))
-         end do
-         moments = sum_moments(fields, nodes, first, last, dt)
-         if (drift) u(:, first:last) = u(:, first:last) + dt*v(:, first:last)
-      end associate
+      !$omp simd private(arm, before, after, drag) &
+      !$omp& reduction(+:kinetic, power_before, power_after)
+      do i = 1, n
+         arm(1) = nodes(1, i) + u(1, i) - fit%centre(1)
+         arm(2) = nodes(2, i) + u(2, i) - fit%centre(2)
+         before(1) = v(1, i)
+         before(2) = v(2, i)
+         drag(1) = -alpha*drag_mass(1, i)*(before(1) - fit%velocity(1) &
+            - fit%gradient(1, 1)*arm(1) - fit%gradient(1, 2)*arm(2))
+         drag(2) = -alpha*drag_mass(2, i)*(before(2) - fit%velocity(2) &
+            - fit%gradient(2, 1)*arm(1) - fit%gradient(2, 2)*arm(2))
+         after(1) = before(1) + inverse_mass(1, i)*(dt*(external(1, i) - internal(1, i) + drag(1)))
+         after(2) = before(2) + inverse_mass(2, i)*(dt*(external(2, i) - internal(2, i) + drag(2)))
+         v(1, i) = after(1)
+         v(2, i) = after(2)
+         kinetic = kinetic + 0.5_wp*mass(i)*(before(1)*after(1) + before(2)*after(2))
+         power_before = power_before + (drag(1)*before(1) + drag(2)*before(2))
+         power_after = power_after + (drag(1)*after(1) + drag(2)*after(2))
+      end do
       sums = [kinetic, power_before, power_after]
-   end subroutine update_affine
+   end subroutine kick_affine
+
+   !> Move consecutive nodes with their velocities.
+   pure subroutine move(n, dt, v, u)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: dt            !! [s]
+      real(wp), intent(in) :: v(2, n)       !! [m/s]
+      real(wp), intent(inout) :: u(2, n)    !! [m]
+
+      u = u + dt*v
+   end subroutine move
 
    !> Moments of a run of nodes at the positions that its velocities lead to.
    pure function sum_moments(fields, nodes, first, last, dt) result(moments)
       type(fields_type), intent(in) :: fields
-      real(wp), intent(in) :: nodes(:, :)
       integer, intent(in) :: first
       integer, intent(in) :: last
+      real(wp), intent(in) :: nodes(2, last)  !! reference positions [m]
       real(wp), intent(in) :: dt
       real(wp) :: moments(n_moments)
 
+      call moments_of(last - first + 1, dt, fields%fit_mass(first), nodes(1, first), &
+         fields%u(1, first), fields%v(1, first), moments)
+   end function sum_moments
+
+   pure subroutine moments_of(n, dt, mass, nodes, u, v, moments)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: dt           !! [s]
+      real(wp), intent(in) :: mass(n)      !! [kg]
+      real(wp), intent(in) :: nodes(2, n)  !! reference positions [m]
+      real(wp), intent(in) :: u(2, n)      !! [m]
+      real(wp), intent(in) :: v(2, n)      !! [m/s]
+      real(wp), intent(out) :: moments(n_moments)
+
       real(wp) :: m, x, y, vx, vy, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12
-      integer :: node
+      integer :: i
 
       s1 = 0.0_wp; s2 = 0.0_wp; s3 = 0.0_wp; s4 = 0.0_wp; s5 = 0.0_wp; s6 = 0.0_wp
       s7 = 0.0_wp; s8 = 0.0_wp; s9 = 0.0_wp; s10 = 0.0_wp; s11 = 0.0_wp; s12 = 0.0_wp
       !$omp simd private(m, x, y, vx, vy) &
       !$omp& reduction(+:s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12)
-      do node = first, last
-         m = fields%fit_mass(node)
-         vx = fields%v(1, node)
-         vy = fields%v(2, node)
-         x = nodes(1, node) + (fields%u(1, node) + dt*vx)
-         y = nodes(2, node) + (fields%u(2, node) + dt*vy)
+      do i = 1, n
+         m = mass(i)
+         vx = v(1, i)
+         vy = v(2, i)
+         x = nodes(1, i) + (u(1, i) + dt*vx)
+         y = nodes(2, i) + (u(2, i) + dt*vy)
          s1 = s1 + m
          s2 = s2 + m*vx
          s3 = s3 + m*vy
@@ -188,6 +262,6 @@ contains
          s12 = s12 + m*y*y
       end do
       moments = [s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12]
-   end function sum_moments
+   end subroutine moments_of
 
 end module lithofrac_run_node_update

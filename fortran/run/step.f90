@@ -17,7 +17,7 @@ module lithofrac_run_step
    use lithofrac_run_damping, only: fit_affine, rayleigh_frequency
    use lithofrac_run_insert_cracks, only: insert_cracks
    use lithofrac_run_model, only: model_type
-   use lithofrac_run_node_update, only: sum_moments, update_affine, update_ground, &
+   use lithofrac_run_node_update, only: move, sum_moments, update_affine, update_ground, &
       update_plain
    use lithofrac_run_observe, only: internal_energy, kinetic_energy
    use lithofrac_run_settings, only: no_damping, relative_to_affine
@@ -353,8 +353,7 @@ contains
 
       associate (first => model%blocks%first_node(run), &
             last => model%blocks%first_node(run + 1) - 1)
-         model%fields%u(:, first:last) = model%fields%u(:, first:last) &
-            + model%dt*model%fields%v(:, first:last)
+         call move(last - first + 1, model%dt, model%fields%v(1, first), model%fields%u(1, first))
       end associate
    end subroutine drift_run
 
