@@ -113,6 +113,9 @@ contains
          if (model%fracture%on) call visitor%visit(size(state%softening), state%softening)
       end associate
       call visitor%visit(size(model%moments), model%moments)
+      do i = 1, size(model%affine)  ! which the moments are about
+         call visitor%visit(2, model%affine(i)%centre)
+      end do
       call visitor%visit(size(model%sums), model%sums)
       call visitor%visit(size(model%alpha), model%alpha)
       call visitor%visit_count(model%reference_step)

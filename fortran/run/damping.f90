@@ -25,21 +25,24 @@ module lithofrac_run_damping
 contains
 
    !> Mass-weighted least-squares fit.
-   pure function fit_affine(moments) result(affine)
+   pure function fit_affine(moments, about) result(affine)
       !> sums over nodes of m, m v (2), m x (2), m v1 x (2), m v2 x (2), m x1 x1, m x1 x2, m x2 x2
       real(wp), intent(in) :: moments(n_moments)
+      !> point that x is measured from [m]; near the centre, or a body far away loses digits
+      real(wp), intent(in) :: about(2)
       type(affine_type) :: affine
 
-      real(wp) :: mass, vx(2, 2), xx(3), determinant
+      real(wp) :: mass, arm(2), vx(2, 2), xx(3), determinant
 
       mass = moments(1)
+      arm = moments(4:5)/mass
       affine%velocity = moments(2:3)/mass
-      affine%centre = moments(4:5)/mass
-      vx(1, :) = moments(6:7) - mass*affine%velocity(1)*affine%centre
-      vx(2, :) = moments(8:9) - mass*affine%velocity(2)*affine%centre
-      xx(1) = moments(10) - mass*affine%centre(1)**2
-      xx(2) = moments(11) - mass*affine%centre(1)*affine%centre(2)
-      xx(3) = moments(12) - mass*affine%centre(2)**2
+      affine%centre = about + arm
+      vx(1, :) = moments(6:7) - mass*affine%velocity(1)*arm
+      vx(2, :) = moments(8:9) - mass*affine%velocity(2)*arm
+      xx(1) = moments(10) - mass*arm(1)**2
+      xx(2) = moments(11) - mass*arm(1)*arm(2)
+      xx(3) = moments(12) - mass*arm(2)**2
       determinant = xx(1)*xx(3) - xx(2)**2
       ! nodes on a line tell no gradient
       if (determinant <= slender*(xx(1) + xx(3))**2) return

@@ -154,7 +154,7 @@ contains
       call kick_affine(last - first + 1, dt, alpha, fit, nodes(1, first), fields%u(1, first), &
          fields%mass(first), fields%inverse_mass(1, first), fields%drag_mass(1, first), &
          fields%external(1, first), fields%internal(1, first), fields%v(1, first), sums)
-      moments = sum_moments(fields, nodes, first, last, dt)
+      moments = sum_moments(fields, nodes, first, last, dt, fit%centre)
       if (drift) call move(last - first + 1, dt, fields%v(1, first), fields%u(1, first))
    end subroutine update_affine
 
@@ -213,22 +213,24 @@ contains
       u = u + dt*v
    end subroutine move
 
-   !> Moments of a run of nodes at the positions that its velocities lead to.
-   pure function sum_moments(fields, nodes, first, last, dt) result(moments)
+   !> Moments of a run of nodes about a point, at the positions that its velocities lead to.
+   pure function sum_moments(fields, nodes, first, last, dt, about) result(moments)
       type(fields_type), intent(in) :: fields
       integer, intent(in) :: first
       integer, intent(in) :: last
       real(wp), intent(in) :: nodes(2, last)  !! reference positions [m]
       real(wp), intent(in) :: dt
+      real(wp), intent(in) :: about(2)        !! [m], see `fit_affine`
       real(wp) :: moments(n_moments)
 
-      call moments_of(last - first + 1, dt, fields%fit_mass(first), nodes(1, first), &
+      call moments_of(last - first + 1, dt, about, fields%fit_mass(first), nodes(1, first), &
          fields%u(1, first), fields%v(1, first), moments)
    end function sum_moments
 
-   pure subroutine moments_of(n, dt, mass, nodes, u, v, moments)
+   pure subroutine moments_of(n, dt, about, mass, nodes, u, v, moments)
       integer, intent(in) :: n
       real(wp), intent(in) :: dt           !! [s]
+      real(wp), intent(in) :: about(2)     !! [m]
       real(wp), intent(in) :: mass(n)      !! [kg]
       real(wp), intent(in) :: nodes(2, n)  !! reference positions [m]
       real(wp), intent(in) :: u(2, n)      !! [m]
@@ -246,8 +248,8 @@ contains
          m = mass(i)
          vx = v(1, i)
          vy = v(2, i)
-         x = nodes(1, i) + (u(1, i) + dt*vx)
-         y = nodes(2, i) + (u(2, i) + dt*vy)
+         x = nodes(1, i) + (u(1, i) + dt*vx) - about(1)
+         y = nodes(2, i) + (u(2, i) + dt*vy) - about(2)
          s1 = s1 + m
          s2 = s2 + m*vx
          s3 = s3 + m*vy

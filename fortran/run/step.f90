@@ -59,7 +59,8 @@ contains
          *(model%fields%external - model%fields%internal)
       do run = 1, model%blocks%n_runs
          model%moments(:, run) = sum_moments(model%fields, model%mesh%nodes, &
-            model%blocks%first_node(run), model%blocks%first_node(run + 1) - 1, 0.0_wp)
+            model%blocks%first_node(run), model%blocks%first_node(run + 1) - 1, 0.0_wp, &
+            model%affine(model%mesh%body_of_node(model%blocks%first_node(run)))%centre)
       end do
       call set_damping(model)
       if (model%contact%on) call note_velocities(model)
@@ -284,7 +285,7 @@ contains
          sums(:, body) = sums(:, body) + model%moments(:, run)
       end do
       do body = 1, model%mesh%n_bodies
-         model%affine(body) = fit_affine(sums(:, body))
+         model%affine(body) = fit_affine(sums(:, body), model%affine(body)%centre)
       end do
    end subroutine set_damping
 
@@ -364,7 +365,8 @@ contains
 
       if (model%settings%damping /= relative_to_affine) return
       model%moments(:, run) = sum_moments(model%fields, model%mesh%nodes, &
-         model%blocks%first_node(run), model%blocks%first_node(run + 1) - 1, model%dt)
+         model%blocks%first_node(run), model%blocks%first_node(run + 1) - 1, model%dt, &
+         model%affine(model%mesh%body_of_node(model%blocks%first_node(run)))%centre)
    end subroutine sum_run
 
    !> Contact at time 0, where a given displacement may have made parts overlap.

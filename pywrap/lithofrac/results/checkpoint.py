@@ -21,7 +21,7 @@ from lithofrac.plain_file import refuse_other
 from lithofrac.problem import Problem
 from lithofrac.results.files import write_whole
 
-FORMAT = 5  # raise it whenever the meaning of a stored number changes
+FORMAT = 6  # raise it whenever the meaning of a stored number changes
 MOST_BYTES = 100_000_000_000  # of a file; a million elements have 1.5 billion
 NAME, PREVIOUS = "checkpoint.npz", "checkpoint_previous.npz"
 FAILED = "checkpoint_failed.npz"  # to look at; nothing resumes from it
