@@ -1,5 +1,6 @@
 """`python -m lithofrac` and the installed `lithofrac`: the command line, from its first import."""
 
+import signal
 import sys
 from contextlib import suppress
 
@@ -7,8 +8,10 @@ INTERRUPTED = 130
 
 
 def start() -> int:
-    """Run one command; its exit code. Ctrl-C during the first imports ends like a later one."""
+    """Run one command; its exit code. Ctrl-C and SIGTERM end it alike, from the first import on."""
     try:
+        if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:  # else somebody asked to be deaf
+            signal.signal(signal.SIGTERM, _interrupt)
         from lithofrac.cli import main
 
         code = main()
@@ -21,6 +24,11 @@ def start() -> int:
         # caught: Python would end by the signal. The next text makes it forget.
         exec("")
     return code
+
+
+def _interrupt(number: int, frame: object) -> None:
+    """Leave every block on the way, so that gmsh is stopped and no half file or folder is left."""
+    raise KeyboardInterrupt
 
 
 if __name__ == "__main__":

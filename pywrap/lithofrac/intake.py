@@ -129,8 +129,11 @@ def resumed(options: Namespace, problem: Problem) -> tuple[bool, list[str]]:
         found = None
     if options.resume or (found and found.same_build and not found.arrays["finished"]):
         return True, [f"{note}; going on from {found.path.name}" for note in found.notes]
-    anew = f"{options.out}: its checkpoint is not of this run, starting anew"
-    return False, [anew] if way_on(options.out) else []
+    if found is None:
+        why = "its checkpoint is not of this run"
+    else:
+        why = "its run has come to its end" if found.same_build else "another build has made it"
+    return False, [f"{options.out}: {why}, starting anew"] if way_on(options.out) else []
 
 
 def way_on(out: Path) -> str:

@@ -92,6 +92,21 @@ def test_full_disk(cracking, unbroken, tmp_path):
     assert_goes_on(cracking, unbroken, kept)
 
 
+def test_full_disk_below_the_temporary_files(tmp_path):
+    """gmsh says nothing of what it could not write."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    own = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c"]
+    script = f'mount -t tmpfs -o size=$1 tmpfs {disk} || exit 98; shift; TMPDIR={disk} exec "$@"'
+    if not shutil.which("unshare") or subprocess.run([*own, script, "sh", "1m", "true"]).returncode:
+        pytest.skip("no right to make a file system of a given size")
+    words = [*LITHOFRAC, "mesh", "hole_r25.0", "--out", str(tmp_path / "mesh.npz")]
+    done = subprocess.run([*own, script, "sh", "40k", *words], stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 2
+    assert done.stderr == f"lithofrac: [Errno 28] No space left on device: '{disk}'\n"
+    assert not (tmp_path / "mesh.npz").exists()
+
+
 def test_folder_that_may_not_be_made(cracking, tmp_path, read_only):
     home = tmp_path / "home"
     home.mkdir()

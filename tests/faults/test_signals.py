@@ -103,8 +103,12 @@ def installed() -> list[str]:
 @pytest.mark.no_core  # it ends before the core is there
 @pytest.mark.parametrize(
     "line",
-    ["signal.raise_signal(signal.SIGINT)", "exec('signal.raise_signal(signal.SIGINT)')"],
-    ids=["line", "text"],
+    [
+        "signal.raise_signal(signal.SIGINT)",
+        "exec('signal.raise_signal(signal.SIGINT)')",
+        "signal.raise_signal(signal.SIGTERM)",
+    ],
+    ids=["line", "text", "SIGTERM"],
 )
 @pytest.mark.parametrize("module", ["lithofrac.cli", "argparse", "lithofrac.intake", "pydantic"])
 @pytest.mark.parametrize("start", [LITHOFRAC, installed()], ids=["module", "script"])
@@ -116,6 +120,27 @@ def test_ctrl_c_while_modules_are_imported_is_one_sentence(tmp_path, start, modu
         [*start, "check", "bar_wave"], env=variables, capture_output=True, text=True, timeout=60
     )
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "lithofrac: interrupted\n")
+
+
+@pytest.mark.no_core  # it ends before there is a mesh
+@SIGNALS
+def test_stopped_while_it_meshes_nothing_is_left(tmp_path, number):
+    (tmp_path / "tmp").mkdir()
+    variables = {**os.environ, "TMPDIR": str(tmp_path / "tmp")}
+    words = ["run", "hole_r25.0", "--out", "out", "--quiet"]
+    process = subprocess.Popen(
+        [*LITHOFRAC, *words], cwd=tmp_path, env=variables, stderr=subprocess.PIPE, text=True
+    )
+    until = time.monotonic() + 60.0
+    while not list((tmp_path / "tmp").glob("*/.fltk")):  # gmsh is at work
+        assert process.poll() is None
+        assert time.monotonic() < until, "no mesh is begun"
+        time.sleep(0.001)
+    process.send_signal(number)
+    said = process.communicate(timeout=60)[1]
+    assert (process.returncode, said) == (130, "lithofrac: interrupted\n")
+    assert not list((tmp_path / "tmp").iterdir())
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.slow

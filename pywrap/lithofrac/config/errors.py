@@ -135,6 +135,7 @@ def _expected(kind: str, context: dict) -> str:
         "dict_type": "a mapping of keys",
         "model_type": "a mapping of keys",
         "model_attributes_type": "a mapping of keys",
+        "string_pattern_mismatch": "a name of letters, digits and any of _ . -",
     }
     if kind in plain:
         return plain[kind]

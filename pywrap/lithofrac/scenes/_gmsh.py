@@ -4,6 +4,7 @@ The only place that starts gmsh. One thread, no user settings: the same text giv
 """
 
 import contextlib
+import errno
 import io
 import os
 import shutil
@@ -87,6 +88,8 @@ def meshed(geo: str, time_limit: float = TIME_LIMIT) -> meshio.Mesh:
         When gmsh finds a mistake in it, leaves no elements, or is not done in time.
     MeshError
         When gmsh cannot be run.
+    OSError
+        When the disk of the temporary files is full, of which gmsh says nothing.
     """
     with tempfile.TemporaryDirectory(prefix="lithofrac-") as name:
         folder = Path(name)
@@ -102,6 +105,7 @@ def meshed(geo: str, time_limit: float = TIME_LIMIT) -> meshio.Mesh:
             raise GeoError(f"gmsh was stopped after {time_limit:g} s; {ENDLESS}") from None
         except OSError as error:
             raise MeshError(f"gmsh could not be run: {error}") from None
+        _refuse_full_disk(folder)
         if done.returncode != 0 or not (folder / "scene.msh").exists():
             said = [*done.stdout.splitlines(), *done.stderr.splitlines()]
             words = [line for line in said if line.strip() and not line.startswith("Warning")]
@@ -111,6 +115,12 @@ def meshed(geo: str, time_limit: float = TIME_LIMIT) -> meshio.Mesh:
             words = wrong[0].partition(":")[2].strip()
             raise GeoError(f"gmsh gave no mesh: {words.removeprefix(NAMED)}")
         return read(folder / "scene.msh")
+
+
+def _refuse_full_disk(folder: Path) -> None:
+    """Refuse what gmsh has written to a disk without any room left: it may lack its end."""
+    if shutil.disk_usage(folder).free == 0:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder.parent))
 
 
 def read(path: Path) -> meshio.Mesh:

@@ -154,9 +154,9 @@ def test_what_is_not_this_run_stopped_is_run_anew(finished, interrupted, monkeyp
         (folder / checkpoint.NAME).write_bytes(b"PK")
     capsys.readouterr()
     assert first_step(folder, monkeypatch, *more) == 0
-    assert capsys.readouterr().err == (
-        f"lithofrac: {folder}: its checkpoint is not of this run, starting anew\n"
-    )
+    why = {"finished": "its run has come to its end", "another build": "another build has made it"}
+    said = why.get(what, "its checkpoint is not of this run")
+    assert capsys.readouterr().err == f"lithofrac: {folder}: {said}, starting anew\n"
 
 
 def test_resume_with_another_build_is_noted(interrupted, monkeypatch, capsys):

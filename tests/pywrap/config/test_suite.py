@@ -145,3 +145,11 @@ def test_every_variant_of_the_suite_differs_from_its_twin_in_what_its_name_says(
         one, other = suite.case(name), suite.case(twin)
         assert one.model_dump(exclude={"title"}) != other.model_dump(exclude={"title"}), name
         assert one.scene.kind == other.scene.kind
+
+
+@pytest.mark.parametrize("name", ["a/../../b", "-a", "a b", "é"])
+def test_a_name_that_is_no_folder_is_refused_with_what_it_may_hold(tmp_path, name):
+    file = tmp_path / "suite.yaml"
+    file.write_text(f"title: A\ncases:\n  {name}: {{extends: bar}}\n", encoding="utf-8")
+    with pytest.raises(ConfigError, match="expected a name of letters, digits and any of _"):
+        load_suite(file)
