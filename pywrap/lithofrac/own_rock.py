@@ -77,7 +77,7 @@ def fit(
     read_off = [key for key in given_by_curves if key in ELASTIC]
     text = _material_text(found, [str(path) for path in tests], source, read_off)
     written = _write(out, text, found)
-    return [*_account(found, read_off), f"written: {', '.join(map(str, written))}"]
+    return [*_account(found, source, read_off), f"written: {', '.join(map(str, written))}"]
 
 
 def _split(tests: list[Triaxial], fit_on: list[float] | None) -> tuple[list, list]:
@@ -225,20 +225,26 @@ def _digits(value: float) -> float:
     return float(f"{value:.{SIGNIFICANT}g}")
 
 
+def _not_given(fit: RockFit, source: str, read_off: list[str]) -> str:
+    """What no test told, and where it is from instead."""
+    told = {*fit.parameters["quantity"], *read_off}
+    rest = [key for key in (*NEEDED, DILATION) if key not in told]
+    return f"from {source}: {', '.join(rest)}"
+
+
 def _material_text(fit: RockFit, tests: list[str], source: str, read_off: list[str]) -> str:
     """The material file: where each number comes from, and the numbers."""
     rock = fit.rock
     fitted = fit.strengths[fit.strengths["role"] == "fitted"]["confinement_MPa"]
     levels = ", ".join(f"{level:g}" for level in sorted(set(fitted)))
     free = list(dict.fromkeys(fit.parameters["quantity"]))
-    rest = [key for key in (*NEEDED, DILATION) if key not in (*free, *read_off)]
     values = {"title": f"Rock fitted to {', '.join(tests)} at {levels} MPa"}
     values |= rock.model_dump(exclude_defaults=True, exclude={"title", *COLUMNS})
     values |= {key: _digits(values[key]) for key in ELASTIC}
     columns = {key: ", ".join(str(_digits(v)) for v in getattr(rock, key)) for key in COLUMNS}
     head = [
         f"Fitted by lithofrac: {', '.join(free)}.",
-        f"Not given by the tests, from {source}: {', '.join(rest)}.",
+        f"Not given by the tests, {_not_given(fit, source, read_off)}.",
     ]
     if read_off:
         head.insert(1, f"Read off the first parts of the curves: {', '.join(read_off)}.")
@@ -272,7 +278,7 @@ def _write(out: Path, text: str, fit: RockFit) -> list[Path]:
     return [out, *beside.values()]
 
 
-def _account(fit: RockFit, read_off: list[str]) -> list[str]:
+def _account(fit: RockFit, source: str, read_off: list[str]) -> list[str]:
     """The fit in words and two tables."""
     rock, rows = fit.rock, len(fit.rock.plastic_strain)
     what = [f"a table of {rows} rows from curves"]
@@ -282,6 +288,7 @@ def _account(fit: RockFit, read_off: list[str]) -> list[str]:
         ]
     what += [f"{key} {getattr(rock, key):.4g}, from the first parts of the curves"
              for key in read_off]  # fmt: skip
+    what.append(f"not given by the tests, {_not_given(fit, source, read_off)}")
     if not fit.converged:
         what.append(f"not converged in {MOST_TRIALS} steps: fewer --knots may help")
     pairs = zip(rock.plastic_strain, rock.friction_angle_deg, rock.dilation_angle_deg, strict=True)

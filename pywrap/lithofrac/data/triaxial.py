@@ -27,6 +27,7 @@ STRENGTHS = ("confinement_MPa", "strength_MPa")
 BESIDE_STRENGTHS = ("strength_min_MPa", "strength_max_MPa", "tests")
 CURVES = ("confinement_MPa", "axial_strain", "axial_stress_MPa")
 BESIDE_CURVES = ("lateral_strain", "volumetric_strain", "test")
+OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs"}
 FEWEST_POINTS = 5  # of a curve
 MOST_STRESS = 1e6  # MPa
 MOST_STRAIN = 0.5  # a curve beyond it is in percent
@@ -91,13 +92,26 @@ def _read(path: Path) -> pd.DataFrame:
     except FileError as error:
         raise DataError(str(error)) from None
     except pd.errors.ParserWarning:
-        raise DataError(f"{path}: has rows of more cells than headings, expected as many") from None
+        wrong = _other_separator(path) or "has rows of more cells than headings, expected as many"
+        raise DataError(f"{path}: {wrong}") from None
     except (ValueError, OverflowError) as error:  # ParserError, EmptyDataError, not UTF-8
         raise DataError(f"{path}: not a CSV file ({one_line(error, 200)})") from None
+    if len(table.columns) == 1 and (wrong := _other_separator(path)):
+        raise DataError(f"{path}: {wrong}")
     table = table.rename(columns=lambda name: str(name).strip()).dropna(how="all")
     if table.empty:
         raise DataError(f"{path}: holds no rows, expected one a test or one a point of a curve")
     return table
+
+
+def _other_separator(path: Path) -> str:
+    """What is wrong with the headings of a file that spreadsheets of some countries write."""
+    with path.open(encoding="utf-8", errors="replace") as file:
+        head = file.readline(10_000)
+    apart = [words for sign, words in OTHER_SEPARATORS.items() if sign in head]
+    if "," in head or not apart:
+        return ""
+    return f"columns are separated by {apart[0]}, expected commas, and points in numbers"
 
 
 def _check_columns(path: Path, table: pd.DataFrame, needed: tuple, beside: tuple) -> None:

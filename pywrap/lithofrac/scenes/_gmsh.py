@@ -24,6 +24,11 @@ MISREAD = (
     meshio.ReadError, ArithmeticError, AssertionError, LookupError, MemoryError, TypeError,
     ValueError,
 )  # fmt: skip
+NO_GROUP = "Incompatible cell data 'gmsh:physical'"  # words of meshio on format 4.1 of all elements
+SAVED_ALL = (
+    "holds elements in no physical group, expected those of groups alone: save it with "
+    "Mesh.SaveAll = 0"
+)
 NOT_CLOSED = "not closed by"  # words of meshio on a section without an end
 FORMATS = "Gmsh's format 2.2 or 4.1"
 NAMED = "'scene.geo', "  # gmsh names its own copy of the text
@@ -138,6 +143,8 @@ def read(path: Path) -> meshio.Mesh:
         if NOT_CLOSED in said.getvalue():
             raise meshio.ReadError(said.getvalue().removeprefix("Warning: "))
     except MISREAD as error:
+        if NO_GROUP in str(error):
+            raise GeoError(SAVED_ALL) from None
         words = one_line(error, 150) or type(error).__name__
         raise GeoError(f"no mesh that can be read, expected {FORMATS} ({words})") from None
     return found

@@ -101,7 +101,8 @@ def _wrong_groups(names: dict, cells: dict) -> str:
     unnamed = [tag for tag in np.unique(tags) if (int(tag), 2) not in names]
     if unnamed:
         count = np.count_nonzero(tags == unnamed[0])
-        return f"{count} triangles are in no physical surface with a name, expected all in one"
+        said = f"{count} triangles are in no physical surface with a name, expected all in one"
+        return said if unnamed[0] else f"{said} (saved with Mesh.SaveAll = 0)"
     for (tag, dim), name in names.items():
         if dim in KINDS and not np.any(cells[dim][1] == tag):
             return f"the physical {KINDS[dim]} {name!r} is empty"

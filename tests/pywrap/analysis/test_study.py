@@ -66,6 +66,15 @@ def test_a_run_that_is_missing_or_did_not_complete_is_refused(study, make_run, d
         study_table([study, *runs], data_folder)
 
 
+def test_a_quantity_like_no_other_is_refused_with_all_that_there_are(study):
+    study.write_text(STUDY.replace("core_seconds", "zzz"))
+    with pytest.raises(DataError, match="expected one of: ") as said:
+        check_quantities(load_study(study), study)
+    listed = str(said.value).partition("expected one of: ")[2].split(", ")
+    assert listed == sorted(listed)
+    assert {"bands.band_angle_deg", "strength.strength_MPa", "wall_seconds"} <= set(listed)
+
+
 @pytest.mark.parametrize(
     ("quantity", "message"),
     [

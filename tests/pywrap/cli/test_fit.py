@@ -43,6 +43,7 @@ def test_strengths_give_a_material_of_one_row_and_say_so(tmp_path, capsys):
     said = capsys.readouterr().out
     assert said.startswith("a table of one row: strengths alone say nothing of hardening")
     assert "strengths predicted: rms 3.49 %, largest 5.34 % at 80 MPa" in said
+    assert "\nnot given by the tests, from configs/materials/sandstone.yaml and --set: " in said
     rock = Material.load(out)
     assert rock.plastic_strain == (0.0,)
     assert rock.dilation_angle_deg == (10.0,)

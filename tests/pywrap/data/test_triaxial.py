@@ -62,6 +62,15 @@ def test_a_column_of_names_parts_tests_of_one_confinement(written):
             "has rows of more cells than headings, expected as many",
         ),
         (
+            "confinement_MPa;strength_MPa\n0;62,1\n20;167\n",
+            "columns are separated by semicolons, expected commas, and points in numbers",
+        ),
+        (
+            "confinement_MPa;strength_MPa\n0;62.1\n20;167\n",
+            "columns are separated by semicolons, expected commas, and points in numbers",
+        ),
+        ("confinement_MPa\tstrength_MPa\n0\t62.1\n", "columns are separated by tabs, expected"),
+        (
             f"confinement_MPa,strength_MPa\n1,{'9' * 400}x\n",
             f"line 2, column 'strength_MPa': '{'9' * 57}...', expected a number from 0 to 1e+06",
         ),

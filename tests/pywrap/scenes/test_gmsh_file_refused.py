@@ -66,6 +66,28 @@ def test_a_file_of_other_words_is_refused(refused, tmp_path):
     assert "\n" not in said
 
 
+@pytest.mark.parametrize(
+    ("version", "message"),
+    [
+        (
+            "msh41",
+            "holds elements in no physical group, expected those of groups alone: save it with "
+            "Mesh.SaveAll = 0",
+        ),
+        (
+            "msh22",
+            "triangles are in no physical surface with a name, expected all in one (saved with "
+            "Mesh.SaveAll = 0)",
+        ),
+    ],
+)
+def test_a_mesh_file_of_all_elements_is_refused_with_what_to_do(
+    refused, tmp_path, version, message
+):
+    by_gmsh(SQUARE + GROUPS, tmp_path / "own.msh", "-format", version, "-save_all")
+    assert refused((tmp_path / "own.msh").read_text(), MSH, name="own.msh").endswith(message)
+
+
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(
     ("place", "message"),
