@@ -19,6 +19,7 @@ from lithofrac.arguments import parser
 from lithofrac.intake import (
     accepted,
     case_of,
+    keep_case,
     made_of,
     mesh_of,
     prepare,
@@ -180,7 +181,9 @@ def run(options: Namespace) -> int:
                 "commit": _commit(),
                 "input_warnings": warnings,
             },
-            prepare=None if resume else partial(prepare, out, Path(options.case), case, made),
+            prepare=partial(keep_case, out, case)
+            if resume
+            else partial(prepare, out, Path(options.case), case, made),
         )
     except KeyboardInterrupt:
         _complain(f"interrupted{way_on(out)}")

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from lithofrac.problem import Mesh, Problem
 
 MOST_STEPS = 1_000_000_000
+COPY = "case.yaml"  # of a results folder
 
 
 def case_of(name: str, options: Namespace) -> Case:
@@ -145,6 +146,14 @@ def way_on(out: Path) -> str:
     return ""
 
 
+def keep_case(out: Path, case: Case) -> None:
+    """Save the case with the values in force; a run that goes on may have other guards."""
+    from lithofrac.config.setting import kept, text_of
+    from lithofrac.results.files import write_text
+
+    write_text(out / COPY, text_of(kept(case)[0]))
+
+
 def prepare(out: Path, named: Path, case: Case, mesh: Mesh) -> None:
     """Delete what an earlier run left, half files of a killed one too, and save the input.
 
@@ -153,11 +162,11 @@ def prepare(out: Path, named: Path, case: Case, mesh: Mesh) -> None:
     named : the case as the user names it, perhaps a file
     """
     from lithofrac.config import ConfigError
-    from lithofrac.config.setting import kept, text_of
+    from lithofrac.config.setting import kept
     from lithofrac.results import files
     from lithofrac.results.files import OWN_FILES, part_of, write_text, write_whole
 
-    copy, (case, beside) = out / "case.yaml", kept(case)
+    copy, beside = out / COPY, kept(case)[1]
     if copy.exists() and named.exists() and copy.samefile(named):
         raise ConfigError(f"--out {out}: the run would replace its case file {named}")
     for geometry, source in beside.items():
@@ -174,6 +183,6 @@ def prepare(out: Path, named: Path, case: Case, mesh: Mesh) -> None:
         for path in (*out.glob(pattern), *out.glob(str(part_of(Path(pattern))))):
             path.unlink()
     write_whole(out / "mesh.npz", mesh.save)
-    write_text(copy, text_of(case))
+    keep_case(out, case)
     for geometry, source in beside.items():
         write_whole(out / geometry, lambda part, source=source: shutil.copyfile(source, part))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from lithofrac.cli import main
+from lithofrac.config import load_case
 from lithofrac.core import Run
 from lithofrac.errors import CoreError
 from lithofrac.results import checkpoint
@@ -52,7 +53,7 @@ def test_what_the_core_refuses_is_bad_input_and_wipes_nothing(
     def refusing(problem):
         raise CoreError("material 1: density is not positive")
 
-    monkeypatch.setattr("lithofrac.run.plan", refusing)
+    monkeypatch.setattr("lithofrac.plan.plan", refusing)
     before = files(finished)
     out = ["--out", str(finished)] if command == "run" else []
     assert main([command, "bar_wave", *out]) == 2
@@ -169,6 +170,15 @@ def test_resume_with_another_build_is_noted(interrupted, monkeypatch, capsys):
     )
     assert capsys.readouterr().err == f"lithofrac: {note}; going on from {checkpoint.NAME}\n"
     assert json.loads((interrupted / "summary.json").read_text())["notes"] == [note]
+
+
+def test_resume_with_other_guards_keeps_the_case_in_force(interrupted):
+    """Guards may change on the way; the copy of the case says those of now."""
+    stop = "guards.speed_stop"
+    assert load_case(interrupted / "case.yaml").guards.speed_stop != 0.3
+    words = ["run", "bar_wave", *SHORT, "--set", f"{stop}=0.3", "--resume"]
+    assert main([*words, "--out", str(interrupted)]) == 0
+    assert load_case(interrupted / "case.yaml").guards.speed_stop == 0.3
 
 
 def test_half_files_of_a_killed_run_go(finished):
