@@ -2,6 +2,7 @@
 !> (Klerck, Sellers & Owen 2004, eqs 13 and 21), and what failed elements regain at a crack.
 module lithofrac_fracture_element_failure
    use lithofrac_base_kinds, only: wp
+   use lithofrac_base_sums, only: ordered_sums
    use lithofrac_fracture_failure_map, only: failure_factor, largest_factor
    use lithofrac_material_rock, only: rock_type
    use lithofrac_mechanics_chunks, only: chunks_type, width
@@ -26,20 +27,20 @@ contains
       real(wp) :: sum_of_factors                     !! of elements beyond 1, 0: none
 
       integer :: chunk, i
-      real(wp) :: part, factor
+      real(wp) :: factor, terms(width), part
 
       sum_of_factors = 0.0_wp
       do chunk = 1, chunks%n_chunks
          if (.not. state%touched(chunk)) cycle
          associate (rock => rocks(chunks%body(chunk)))
-            part = 0.0_wp
-            !$omp simd private(factor) reduction(+:part)
+            !$omp simd private(factor)
             do i = 1, width
                factor = -state%softening(i, chunk)*max(state%opening(i, 1, chunk), &
                   state%opening(i, 2, chunk))
-               part = part + merge(min(factor, largest_factor*rock%tensile_strength), 0.0_wp, &
+               terms(i) = merge(min(factor, largest_factor*rock%tensile_strength), 0.0_wp, &
                   factor >= rock%tensile_strength)
             end do
+            part = sum(ordered_sums(width, 1, terms))
             if (rock%tensile_strength > 0.0_wp) then
                sum_of_factors = sum_of_factors + part/rock%tensile_strength
             end if

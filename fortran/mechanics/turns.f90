@@ -5,6 +5,7 @@
 !> however fast the motion is.
 module lithofrac_mechanics_turns
    use lithofrac_base_kinds, only: wp
+   use lithofrac_base_sums, only: ordered_sums
    use lithofrac_material_rock, only: rock_type
    use lithofrac_mechanics_chunks, only: chunks_type, width
    use lithofrac_mechanics_fields, only: fields_type, inelastic_type
@@ -85,11 +86,9 @@ contains
       real(wp) :: work
 
       integer :: i
-      real(wp) :: c, s, versine, turned, stretched, skew0, skew1, mixed, ratio
+      real(wp) :: c, s, versine, turned, stretched, skew0, skew1, mixed, ratio, terms(n)
 
-      work = 0.0_wp
-      !$omp simd private(c, s, versine, turned, stretched, skew0, skew1, mixed, ratio) &
-      !$omp& reduction(+:work)
+      !$omp simd private(c, s, versine, turned, stretched, skew0, skew1, mixed, ratio)
       do i = 1, n
          s = rotation1(i, 2)*rotation0(i, 1) - rotation1(i, 1)*rotation0(i, 2)
          c = rotation1(i, 1)*rotation0(i, 1) + rotation1(i, 2)*rotation0(i, 2)
@@ -109,8 +108,9 @@ contains
             + stress1(i, 4)*(strain0(i, 1) - strain0(i, 2))
          ratio = rotation0(i, 3)/rotation1(i, 3)
          turned = mixed - skew0*ratio - skew1/ratio
-         work = work + 0.5_wp*volume(i)*(s*turned - versine*stretched)
+         terms(i) = 0.5_wp*volume(i)*(s*turned - versine*stretched)
       end do
+      work = sum(ordered_sums(n, 1, terms))
    end function chord_sum
 
 end module lithofrac_mechanics_turns

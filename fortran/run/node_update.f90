@@ -4,14 +4,16 @@
 !> number of threads. A prescribed component has zero inverse mass and keeps its velocity.
 module lithofrac_run_node_update
    use lithofrac_base_kinds, only: wp
+   use lithofrac_base_sums, only: ordered_sums
    use lithofrac_mechanics_fields, only: fields_type
    use lithofrac_run_damping, only: affine_type, n_moments
    implicit none
    private
 
-   public :: move, n_sums, sum_moments, update_affine, update_ground, update_plain
+   public :: kinetic_of, move, n_sums, sum_moments, update_affine, update_ground, update_plain
 
    integer, parameter :: n_sums = 3  !! kinetic energy [J], damping power before and after [W]
+   integer, parameter :: group = 128  !! nodes whose moments are summed together, near the core
 
 contains
 
@@ -47,19 +49,20 @@ contains
       real(wp), intent(inout) :: v(2, n)          !! [m/s]
       real(wp), intent(out) :: kinetic            !! [J]
 
-      real(wp) :: before, after
-      integer :: i, k
+      real(wp) :: before(2), after(2), terms(n)
+      integer :: i
 
-      kinetic = 0.0_wp
-      !$omp simd private(before, after, k) reduction(+:kinetic)
+      !$omp simd private(before, after)
       do i = 1, n
-         do k = 1, 2
-            before = v(k, i)
-            after = before + inverse_mass(k, i)*(dt*(external(k, i) - internal(k, i)))
-            v(k, i) = after
-            kinetic = kinetic + 0.5_wp*mass(i)*(before*after)
-         end do
+         before(1) = v(1, i)
+         before(2) = v(2, i)
+         after(1) = before(1) + inverse_mass(1, i)*(dt*(external(1, i) - internal(1, i)))
+         after(2) = before(2) + inverse_mass(2, i)*(dt*(external(2, i) - internal(2, i)))
+         v(1, i) = after(1)
+         v(2, i) = after(2)
+         terms(i) = 0.5_wp*mass(i)*(before(1)*after(1) + before(2)*after(2))
       end do
+      kinetic = sum(ordered_sums(n, 1, terms))
    end subroutine kick
 
    !> Velocities, then displacements, of both components of consecutive nodes.
@@ -113,13 +116,10 @@ contains
       real(wp), intent(inout) :: v(2, n)          !! [m/s]
       real(wp), intent(out) :: sums(n_sums)
 
-      real(wp) :: before, after, drag, kinetic, power_before, power_after
+      real(wp) :: before, after, drag, terms(2, n, n_sums)
       integer :: i, k
 
-      kinetic = 0.0_wp
-      power_before = 0.0_wp
-      power_after = 0.0_wp
-      !$omp simd private(before, after, drag, k) reduction(+:kinetic, power_before, power_after)
+      !$omp simd private(before, after, drag, k)
       do i = 1, n
          do k = 1, 2
             before = v(k, i)
@@ -127,12 +127,12 @@ contains
                - alpha*dt*free_mass(k, i)*before)/(1.0_wp + 0.5_wp*alpha*dt)
             drag = -0.5_wp*alpha*free_mass(k, i)*(before + after)
             v(k, i) = after
-            kinetic = kinetic + 0.5_wp*mass(i)*(before*after)
-            power_before = power_before + drag*before
-            power_after = power_after + drag*after
+            terms(k, i, 1) = 0.5_wp*mass(i)*(before*after)
+            terms(k, i, 2) = drag*before
+            terms(k, i, 3) = drag*after
          end do
       end do
-      sums = [kinetic, power_before, power_after]
+      sums = ordered_sums(2*n, n_sums, terms)
    end subroutine kick_ground
 
    !> Relative to the affine motion `fit`; also sums the moments for the next fit.
@@ -175,14 +175,10 @@ contains
       real(wp), intent(inout) :: v(2, n)          !! [m/s]
       real(wp), intent(out) :: sums(n_sums)
 
-      real(wp) :: arm(2), before(2), after(2), drag(2), kinetic, power_before, power_after
+      real(wp) :: arm(2), before(2), after(2), drag(2), terms(n, n_sums)
       integer :: i
 
-      kinetic = 0.0_wp
-      power_before = 0.0_wp
-      power_after = 0.0_wp
-      !$omp simd private(arm, before, after, drag) &
-      !$omp& reduction(+:kinetic, power_before, power_after)
+      !$omp simd private(arm, before, after, drag)
       do i = 1, n
          arm(1) = nodes(1, i) + u(1, i) - fit%centre(1)
          arm(2) = nodes(2, i) + u(2, i) - fit%centre(2)
@@ -196,11 +192,11 @@ contains
          after(2) = before(2) + inverse_mass(2, i)*(dt*(external(2, i) - internal(2, i) + drag(2)))
          v(1, i) = after(1)
          v(2, i) = after(2)
-         kinetic = kinetic + 0.5_wp*mass(i)*(before(1)*after(1) + before(2)*after(2))
-         power_before = power_before + (drag(1)*before(1) + drag(2)*before(2))
-         power_after = power_after + (drag(1)*after(1) + drag(2)*after(2))
+         terms(i, 1) = 0.5_wp*mass(i)*(before(1)*after(1) + before(2)*after(2))
+         terms(i, 2) = drag(1)*before(1) + drag(2)*before(2)
+         terms(i, 3) = drag(1)*after(1) + drag(2)*after(2)
       end do
-      sums = [kinetic, power_before, power_after]
+      sums = ordered_sums(n, n_sums, terms)
    end subroutine kick_affine
 
    !> Move consecutive nodes with their velocities.
@@ -223,11 +219,17 @@ contains
       real(wp), intent(in) :: about(2)        !! [m], see `fit_affine`
       real(wp) :: moments(n_moments)
 
-      call moments_of(last - first + 1, dt, about, fields%fit_mass(first), nodes(1, first), &
-         fields%u(1, first), fields%v(1, first), moments)
+      integer :: from, n
+
+      moments = 0.0_wp
+      do from = first, last, group
+         n = min(group, last - from + 1)
+         moments = moments + moments_of(n, dt, about, fields%fit_mass(from), nodes(1, from), &
+            fields%u(1, from), fields%v(1, from))
+      end do
    end function sum_moments
 
-   pure subroutine moments_of(n, dt, about, mass, nodes, u, v, moments)
+   pure function moments_of(n, dt, about, mass, nodes, u, v) result(moments)
       integer, intent(in) :: n
       real(wp), intent(in) :: dt           !! [s]
       real(wp), intent(in) :: about(2)     !! [m]
@@ -235,35 +237,49 @@ contains
       real(wp), intent(in) :: nodes(2, n)  !! reference positions [m]
       real(wp), intent(in) :: u(2, n)      !! [m]
       real(wp), intent(in) :: v(2, n)      !! [m/s]
-      real(wp), intent(out) :: moments(n_moments)
+      real(wp) :: moments(n_moments)
 
-      real(wp) :: m, x, y, vx, vy, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12
+      real(wp) :: m, x, y, vx, vy, terms(n, n_moments)
       integer :: i
 
-      s1 = 0.0_wp; s2 = 0.0_wp; s3 = 0.0_wp; s4 = 0.0_wp; s5 = 0.0_wp; s6 = 0.0_wp
-      s7 = 0.0_wp; s8 = 0.0_wp; s9 = 0.0_wp; s10 = 0.0_wp; s11 = 0.0_wp; s12 = 0.0_wp
-      !$omp simd private(m, x, y, vx, vy) &
-      !$omp& reduction(+:s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12)
+      !$omp simd private(m, x, y, vx, vy)
       do i = 1, n
          m = mass(i)
          vx = v(1, i)
          vy = v(2, i)
          x = nodes(1, i) + (u(1, i) + dt*vx) - about(1)
          y = nodes(2, i) + (u(2, i) + dt*vy) - about(2)
-         s1 = s1 + m
-         s2 = s2 + m*vx
-         s3 = s3 + m*vy
-         s4 = s4 + m*x
-         s5 = s5 + m*y
-         s6 = s6 + m*vx*x
-         s7 = s7 + m*vx*y
-         s8 = s8 + m*vy*x
-         s9 = s9 + m*vy*y
-         s10 = s10 + m*x*x
-         s11 = s11 + m*x*y
-         s12 = s12 + m*y*y
+         terms(i, 1) = m
+         terms(i, 2) = m*vx
+         terms(i, 3) = m*vy
+         terms(i, 4) = m*x
+         terms(i, 5) = m*y
+         terms(i, 6) = m*vx*x
+         terms(i, 7) = m*vx*y
+         terms(i, 8) = m*vy*x
+         terms(i, 9) = m*vy*y
+         terms(i, 10) = m*x*x
+         terms(i, 11) = m*x*y
+         terms(i, 12) = m*y*y
       end do
-      moments = [s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12]
-   end subroutine moments_of
+      moments = ordered_sums(n, n_moments, terms)
+   end function moments_of
+
+   !> Kinetic energy of consecutive nodes [J].
+   pure function kinetic_of(n, mass, v) result(energy)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: mass(n)  !! [kg]
+      real(wp), intent(in) :: v(2, n)  !! [m/s]
+      real(wp) :: energy
+
+      real(wp) :: terms(n)
+      integer :: i
+
+      !$omp simd
+      do i = 1, n
+         terms(i) = 0.5_wp*mass(i)*(v(1, i)*v(1, i) + v(2, i)*v(2, i))
+      end do
+      energy = sum(ordered_sums(n, 1, terms))
+   end function kinetic_of
 
 end module lithofrac_run_node_update

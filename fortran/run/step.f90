@@ -17,8 +17,8 @@ module lithofrac_run_step
    use lithofrac_run_damping, only: fit_affine, rayleigh_frequency
    use lithofrac_run_insert_cracks, only: insert_cracks
    use lithofrac_run_model, only: model_type
-   use lithofrac_run_node_update, only: move, sum_moments, update_affine, update_ground, &
-      update_plain
+   use lithofrac_run_node_update, only: kinetic_of, move, sum_moments, update_affine, &
+      update_ground, update_plain
    use lithofrac_run_observe, only: internal_energy, kinetic_energy
    use lithofrac_run_settings, only: no_damping, relative_to_affine
    use lithofrac_run_watch, only: check_state
@@ -204,16 +204,17 @@ contains
       type(model_type), intent(inout) :: model
 
       real(wp) :: energy
-      integer :: node
+      integer :: run
 
       if (mod(model%step, look_interval) /= 0) return
       energy = 0.0_wp
-      associate (mass => model%fields%mass, v => model%fields%v)
-         !$omp simd reduction(+:energy)
-         do node = 1, model%mesh%n_nodes
-            energy = energy + 0.5_wp*mass(node)*(v(1, node)*v(1, node) + v(2, node)*v(2, node))
-         end do
-      end associate
+      do run = 1, model%blocks%n_runs
+         associate (first => model%blocks%first_node(run), &
+               last => model%blocks%first_node(run + 1) - 1)
+            energy = energy + kinetic_of(last - first + 1, model%fields%mass(first), &
+               model%fields%v(1, first))
+         end associate
+      end do
       if (energy > model%fast_energy) model%fast_until = model%step + booked_steps
    end subroutine look_for_speed
 

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 MOST_SENTENCES = 50  # of one file; nobody reads more
-MOST_KNOWN = 2000  # characters of a list of what there is; quantities of a study take most
+MOST_KNOWN = 1400  # characters of a list of what there is; quantities of a study take most
 
 
 class ConfigError(ValueError):
@@ -58,7 +58,8 @@ def suggestion(word: str, known: list[str]) -> str:
     near = difflib.get_close_matches(str(word)[:100], known, n=1, cutoff=0.6)
     if near:
         return f"did you mean '{one_line(near[0])}'?"
-    return f"expected one of: {one_line(', '.join(sorted(known)), MOST_KNOWN)}"
+    words = ", ".join(one_line(one) for one in sorted(known))
+    return f"expected one of: {one_line(words, MOST_KNOWN)}"
 
 
 def _sentence(key: str, item: dict, section: type[BaseModel] | None) -> str:
