@@ -269,5 +269,7 @@ TARGETS = (
     ),
     Target("scenes whose bits hang on what is left out", _other_bits, most=0),
     Target("of an elastic step, all that is not for elements", _unused, most=2.0, unit=" %"),
-    Target("predicted over measured time, or its inverse", _prediction, most=WITHIN),
+    Target(
+        "predicted over measured time of a continuum run, or its inverse", _prediction, most=WITHIN
+    ),
 )

@@ -67,12 +67,13 @@ def bandwidth(size: float, repeat: int) -> float:
     """Bytes per core-second of a triad a = b + s c whose three arrays take `size` bytes together.
 
     numpy makes two passes of it, with two arrays to read and two to write (a twice, and again).
+    Arrays are new in each repeat: pages that fall badly in a cache halve what is found.
     """
     n = max(1024, int(size / 3 / REAL))
-    a, b, c = np.zeros(n), np.ones(n), np.full(n, 2.0)
     passes = max(1, int(2e8 / (5 * REAL * n)))
     best = 0.0
     for _ in range(repeat):
+        a, b, c = np.zeros(n), np.ones(n), np.full(n, 2.0)
         start = time.process_time()
         for _ in range(passes):
             np.multiply(c, 3.0, out=a)
@@ -92,17 +93,17 @@ def peak_flops(repeat: int) -> float:
     return best
 
 
-def roofline(name: str, elements: int, speed: float, flops: float, repeat: int) -> dict:
+def roofline(name: str, speed: float, flops: float, stream: float) -> dict:
     """Columns of a row: bytes and flops of an element-step, and the share of the lower roof.
 
     Parameters
     ----------
     speed : million element-steps per core-second
     flops : peak of a core [1/s]
+    stream : bandwidth of a core for arrays as large as those of a step [B/s], one for all rows
     """
     if name not in BYTES:
         return {}
-    stream = bandwidth(BYTES[name] * elements, repeat)
     roof = min(stream / BYTES[name], flops / FLOPS[name])
     return {
         "bytes_per_element_step": BYTES[name],

@@ -76,14 +76,17 @@ def continuum_rows(cells: int, repeat: int) -> list[dict]:
             names[key] = name, threads
             subjects[key] = Subject(blocks.stepper(Run(problem), threads), threads=threads)
     elements = len(mesh.triangles)
+    size = machine.STEP_BYTES * elements
+    before = machine.bandwidth(size, repeat)
     speeds = race(subjects, elements, repeat)
+    stream = max(before, machine.bandwidth(size, repeat))
     flops = machine.peak_flops(repeat)
     rows = []
     for key, (name, threads) in names.items():
         found = row(name, elements, threads, speeds[key], speeds[BARE])
         if threads == 1:
             speed = found["million_element_steps_per_core_second"]
-            found |= machine.roofline(name, elements, speed, flops, repeat)
+            found |= machine.roofline(name, speed, flops, stream)
         rows.append(found)
     return with_threads(rows, speeds)
 

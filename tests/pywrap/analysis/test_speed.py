@@ -111,7 +111,7 @@ def test_one_scene_with_other_bits_is_a_failure(files, tmp_path):
     found = verdicts(files([], leave_out=table), tmp_path)
     assert found["scenes whose bits hang on what is left out"] == (1, FAILS)
     # only continuum runs count, and too fast is as wrong as too slow
-    factor, said = found["predicted over measured time, or its inverse"]
+    factor, said = found["predicted over measured time of a continuum run, or its inverse"]
     assert factor == pytest.approx(2.5)
     assert said == FAILS
 
